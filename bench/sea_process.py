@@ -18,7 +18,7 @@ import zenoh
 
 from bench.reference import HULLS, WEATHERS, Sea, SeaCase, simulate
 from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
-from bench.reference.boats.actuator_faults import USUAL, hidden_in
+from bench.reference.boats.actuator_faults import FAULT_SIZES, hidden_in
 from bench.reference.boats.boat_sea import write_csv
 from bench.reference.boats.helmsman import PLANS
 from bench.reference.trial_legs import MANOEUVRES
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="what happens to it that nobody tells (repeat): HullFouling, ...; of a hull with several "
-        f"actuators WHAT.ACTUATOR or WHAT.ACTUATOR:SIZE, WHAT one of {', '.join(USUAL)}",
+        f"actuators WHAT.ACTUATOR or WHAT.ACTUATOR:SIZE, WHAT one of {', '.join(FAULT_SIZES)}",
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--hz", type=float, default=10.0, help="how often the sea moves on (default: 10)")
@@ -208,7 +208,7 @@ def _sized(text: str) -> tuple[str, float]:
     """`worn.port:0.18`, or without a size the usual one."""
     name, _, size = text.partition(":")
     try:
-        return name, float(size) if size else USUAL.get(name.partition(".")[0], 1.0)
+        return name, float(size) if size else FAULT_SIZES.get(name.partition(".")[0], 1.0)
     except ValueError:
         raise UsageError(f"--hidden {text}: {size!r} is no number.") from None
 

@@ -2,9 +2,10 @@
 
     python docs/results_page.py
 
-writes docs/results/cases.md and the table in docs/results/decision.md. With --take-in the table is made
-first, of the answers in tests/study/diagnosis/recorded_facts.json: which of them are right is asked of the
-two benchmarks by which the voyages were made."""
+writes docs/results/cases.md and the table in docs/results/decision.md; and docs/results/judgement.md down to
+what is written by hand there, of the fleet's answers that `python -m bench.fleet keep` put down. With
+--take-in the table of cases is made first, of the answers in tests/study/diagnosis/recorded_facts.json: which
+of them are right is asked of the two benchmarks by which the voyages were made."""
 
 import csv
 import json
@@ -14,13 +15,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bench.decisions.__main__ import right as right_of_decisions
+from bench.fleet import keep_answers, kept_rows
 from bench.fleet.answer_score import right as right_of_fleet
+from bench.fleet.fleet_page import by_hand
 from bench.fleet.hidden_causes import OUTSIDE
+from bench.fleet.judgement_page import judgement
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDED = ROOT / "tests" / "study" / "diagnosis" / "recorded_facts.json"
 RESULTS = ROOT / "docs" / "results"
 CASES, CASES_PAGE, DECISION_PAGE = RESULTS / "cases.csv", RESULTS / "cases.md", RESULTS / "decision.md"
+JUDGEMENT_PAGE = RESULTS / "judgement.md"
 BEGIN, END = "<!-- cases: made by docs/results_page.py -->", "<!-- end of cases -->"
 DECISIONS, FLEET = "python -m bench.decisions FOLDER", "python -m bench.fleet run FOLDER"
 
@@ -207,8 +212,19 @@ def decision_page(text: str, rows: Sequence[CaseRow]) -> str:
     return f"{before}{BEGIN}\n{decisions(rows)}\n{END}{rest.partition(END)[2]}"
 
 
+def answers() -> list[dict[str, Any]]:
+    """The fleet's answers, as rows of `python -m bench.fleet run`."""
+    return kept_rows.read(keep_answers.TABLE, keep_answers.FACTS)
+
+
+def judgement_page(rows: Sequence[Mapping[str, Any]]) -> str:
+    """docs/results/judgement.md of these answers; what is written by hand at its end stays."""
+    return judgement(rows, json.loads(keep_answers.FIT.read_text())) + by_hand(JUDGEMENT_PAGE)
+
+
 if __name__ == "__main__":
     if "--take-in" in sys.argv:
         write(taken_in())
     CASES_PAGE.write_text(cases_page(read()))
     DECISION_PAGE.write_text(decision_page(DECISION_PAGE.read_text(), read()))
+    JUDGEMENT_PAGE.write_text(judgement_page(answers()))

@@ -164,7 +164,7 @@ def learn(
         "loss": settings.loss,
         "seeds": seeds,
         "seed": seeds[taught.index(best)],
-        "held_out": judged.told(),
+        "held_out": judged.as_json(),
         "verdict": judged.sentence(),
         "learned_share": share(best.network, model, samples.situation(slice(None))),
         "inputs": list(best.network.names),

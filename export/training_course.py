@@ -19,14 +19,14 @@ from export.settings import STAGES, Progress, Set, TrainingSettings
 from twin.physics.model import Model
 
 DECAY_EPOCHS = 10
-MOST = 4096  # windows or moments that a validation looks at
+MAX_VALIDATED = 4096  # windows or moments that a validation looks at
 EVEN = 10.0
 # in an epoch of single moments at least: where there is less to learn from, batches are smaller, not the
 # steps fewer
 STEPS = 50
 # validation voyages from which they may say when to stop; fewer are not like the rest, and all epochs are
 # gone through
-FEWEST = 5
+LEAST_VALIDATION = 5
 
 
 class TrainingCourse:
@@ -60,7 +60,7 @@ class TrainingCourse:
         self.key = _key(settings, data)
         self.kept = self._kept()
         self.best = float("inf")
-        self.asked = int(data["validation"].samples.voyage.max()) + 1 >= FEWEST
+        self.asked = int(data["validation"].samples.voyage.max()) + 1 >= LEAST_VALIDATION
         self.weight = torch.ones(1)  # of each training voyage, while a stage runs
 
     def run(self, stage: str) -> None:
@@ -168,9 +168,9 @@ class TrainingCourse:
         return self.data[part].windows.voyage if stage == "rollout" else self.data[part].samples.voyage
 
     def _by_voyage(self, network: ResidualNetwork, stage: str, part: str) -> torch.Tensor:
-        """The mean loss of every voyage of a part (over at most MOST windows or moments)."""
+        """The mean loss of every voyage of a part (over at most MAX_VALIDATED windows or moments)."""
         voyage = self._voyage(stage, part)
-        k = torch.arange(0, voyage.numel(), max(1, voyage.numel() // MOST))
+        k = torch.arange(0, voyage.numel(), max(1, voyage.numel() // MAX_VALIDATED))
         with torch.no_grad():
             each = torch.cat([self._each(network, stage, part, some) for some in k.split(1024)]).cpu()
         total = torch.zeros(int(voyage.max()) + 1).index_add(0, voyage[k], each)
@@ -201,7 +201,9 @@ class TrainingCourse:
         if stage == "paper":
             many = len(self.data["validation"].samples)
             return float(
-                self._literal(network, "validation", torch.arange(0, many, max(1, many // MOST))).detach()
+                self._literal(
+                    network, "validation", torch.arange(0, many, max(1, many // MAX_VALIDATED))
+                ).detach()
             )
         return float(self._by_voyage(network, stage, "validation").clamp(min=1e-12).log().mean().exp())
 

@@ -49,7 +49,7 @@ class Worth:
             f"{self.ratio_high95:.2f}), the heading by {num(b, 3)} deg, {num(a, 3)} deg without"
         )
 
-    def told(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, Any]:
         """The same for the JSON."""
         return {
             "horizon_s": self.horizon_s,

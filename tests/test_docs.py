@@ -60,6 +60,19 @@ def test_the_architecture_describes_every_room():
     assert not [room for room in rooms if room != "twin.study" and f"**{room}**" not in page]
 
 
+def test_what_the_architecture_names_stands_in_the_file_that_it_names():
+    """Expected: of each `name` (`file.py`), and of each type that travels, the file gives the name."""
+    page = (ROOT / "docs" / "architecture.md").read_text()
+    pairs = re.findall(r"`(\w+)`(?:, `\w+`)* \(`([\w/]+\.py)`", page)
+    pairs += re.findall(r"^\| `(\w+)`[^|]*\| `([\w/]+\.py)`", page, re.M)
+    files = [p for room in ("twin", "docs") for p in (ROOT / room).rglob("*.py")]
+    assert len(pairs) > 25
+    for name, file in pairs:
+        places = [p.read_text() for p in files if str(p).endswith(f"/{file}")]
+        given = rf"^\s*((async )?def|class) {name}\b|^{name}\b.*="
+        assert any(re.search(given, text, re.M) for text in places), (name, file)
+
+
 def test_the_diary_is_linked_from_the_index_alone():
     linking = [p.name for p in PAGES if "](history/design.md)" in p.read_text()]
     assert linking == ["index.md"]

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import twin
+from tests import command_lines
 from twin.physics import ship as ships
 from twin.physics.ship_pair import tidy
 from twin.recording.read import read_voyage
@@ -21,11 +22,10 @@ from twin.studio.project import Project
 
 HERE = Path(__file__).parent
 BUNDLED = Path(twin.__file__).parent / "voyages"
-INIT = ["init", "Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5"]
 VOYAGES = ("held.mcap", "short.mcap")
 ADD = ["add", "HullFouling", "--ship", "mine.toml", "--voyage", "short.mcap", "--held-out", "held.mcap"]
 VERBS = {
-    "init": [*INIT, "-o", "mine.toml", "--force"],
+    "init": command_lines.init("Alma", "-o", "mine.toml", "--force"),
     "calibrate": ["calibrate", "short.mcap", "--ship", "mine.toml", "-o", "mine.toml", "--force"],
     "add": [*ADD, "-o", "mine.toml", "--force"],
 }

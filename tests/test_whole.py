@@ -5,6 +5,7 @@ import stat
 
 import pytest
 
+from tests import command_lines
 from twin import whole
 from twin.cli import main
 from twin.commands.story import SHIP
@@ -62,22 +63,5 @@ def test_a_ship_file_is_not_written_over_without_being_asked_to(words, tmp_path,
 def test_force_writes_over_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.toml").write_bytes(SHIP.read_bytes())
-    assert (
-        main(
-            [
-                "init",
-                "Alma",
-                "--length-pp-m",
-                "180",
-                "--beam-m",
-                "30",
-                "--draught-m",
-                "10.5",
-                "-o",
-                "mine.toml",
-                "--force",
-            ]
-        )
-        == 0
-    )
+    assert main(command_lines.init("Alma", "-o", "mine.toml", "--force")) == 0
     assert b"Alma" in (tmp_path / "mine.toml").read_bytes()

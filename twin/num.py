@@ -6,7 +6,7 @@
 
 from math import isfinite
 
-LEAST, MOST = -4, 12  # powers of ten between which a number is told by its digits alone
+LEAST_POWER, GREATEST_POWER = -4, 12  # powers of ten between which a number is told by its digits alone
 
 
 def num(value: float, digits: int = 2, sign: bool = False) -> str:
@@ -17,7 +17,7 @@ def num(value: float, digits: int = 2, sign: bool = False) -> str:
     plus = "+" if sign else ""
     mantissa, _, power = f"{value:{plus}.{digits - 1}e}".partition("e")
     tens = int(power)
-    if not LEAST <= tens < MOST:
+    if not LEAST_POWER <= tens < GREATEST_POWER:
         return f"{mantissa}e{tens}"
     return f"{float(f'{mantissa}e{tens}'):{plus}.{max(digits - 1 - tens, 0)}f}"
 
@@ -25,7 +25,7 @@ def num(value: float, digits: int = 2, sign: bool = False) -> str:
 def as_given(value: float, digits: int = 6) -> str:
     """A declared number as it was given, to at most so many significant digits, its whole part whole: 120,
     0.5, 1000000000."""
-    whole = 10.0**digits <= abs(value) < 10.0**MOST
+    whole = 10.0**digits <= abs(value) < 10.0**GREATEST_POWER
     head, point, power = (f"{value:.0f}" if whole else num(value, digits)).partition("e")
     return (head.rstrip("0").rstrip(".") if "." in head else head) + point + power
 

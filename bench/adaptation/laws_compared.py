@@ -20,7 +20,7 @@ from bench import bench_output
 from bench.adaptation import laws as peers
 from bench.adaptation.laws import Stream
 from bench.options import positive
-from bench.paper.paper_voyages import FULL, QUICK, changed, zigzags
+from bench.paper.paper_voyages import FULL_PLAN, QUICK, changed, zigzags
 from bench.reference import HULLS, Change
 from twin.live.learning.adapt import Adaptation
 from twin.live.learning.adapted_row import BESIDE
@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
     from bench.adaptation.page import figure, page
     from bench.paper.models import Workshop
 
-    shop = Workshop.planned(FULL if args.full else QUICK, args.work, bench_output.tell)
+    shop = Workshop.planned(FULL_PLAN if args.full else QUICK, args.work, bench_output.tell)
     result = {"schema_version": 1, "seeds": args.seeds, "full": args.full} | compare(shop, args.seeds)
     more = ""
     if args.page:
@@ -131,7 +131,9 @@ def ships(seeds: int) -> dict[str, list[Any]]:
 def hulls() -> dict[str, Any]:
     """The ship's own, and what may become of it."""
     hull = HULLS["kvlcc2"]
-    heavy, held = (changed(FULL)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)"))
+    heavy, held = (
+        changed(FULL_PLAN)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)")
+    )
     return {
         "as it is": hull,
         "mass +5 %": heavy,

@@ -98,7 +98,7 @@ def decided(folder: Path, question: KnownCase, tag: str) -> dict[str, Any]:
         "verdict": answer.verdict,
         "reason": answer.reason,
         "missing": answer.missing,
-        "facts": facts.told(),
+        "facts": facts.as_json(),
     }
 
 

@@ -90,6 +90,8 @@ def astray(row: Row, limit: float = 1.5) -> bool:
 
 def truths(row: Row) -> dict[str, float]:
     """Numbers of what is hidden, as the twin's effects have them; a foreign form at service speed."""
+    if "truths" in row:  # an answer as it is kept (kept_rows.py)
+        return dict(row["truths"])
     f, hidden = row["flaws"], row["hidden"]
     one = {
         "HeadingBias.bias": f.get("heading"),
@@ -127,10 +129,15 @@ def intervals(row: Row) -> list[tuple[str, bool]]:
     return out
 
 
-def answered_probabilities(row: Row) -> list[tuple[float, bool]]:
-    """Every probability that an answer tells of a cause, and whether the cause is there."""
+def posterior(candidate: Mapping[str, Any]) -> float:
+    """The posterior probability of a cause; an answer of before 26 November 2026 told no other."""
+    return float(candidate.get("posterior", candidate.get("probability")))
+
+
+def answered_posteriors(row: Row) -> list[tuple[float, bool]]:
+    """The posterior of every cause that an answer tells, and whether the cause is there."""
     return [
-        (c["probability"], c["effect"] in row["hidden"])
+        (posterior(c), c["effect"] in row["hidden"])
         for c in row["candidates"]
         if c["effect"] in CATALOGUE and c["effect"] not in OF_THE_VOYAGE
     ]

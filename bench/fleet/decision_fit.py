@@ -45,13 +45,6 @@ WRONG = 0.5  # of a wrong name
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, nargs="+", help="folders with rows.jsonl")
     parser.add_argument("--json", type=Path, metavar="FILE.json", default=Path("fit.json"))
-    parser.add_argument(
-        "--examples",
-        type=Path,
-        metavar="FILE.csv",
-        default=Path("probability-examples.csv"),
-        help="table of what the probabilities were fitted to",
-    )
 
 
 @contextmanager
@@ -175,39 +168,60 @@ def added(all_of: Sequence[dict[str, tuple[int, int]]]) -> dict[str, str]:
     return {k: str(Share(sum(o[k][0] for o in all_of), sum(o[k][1] for o in all_of))) for k in all_of[0]}
 
 
-def run(args: argparse.Namespace) -> int:
-    rows = [r | {"read": read_facts(r)} for r in rows_of(args.folder)]
-    families = sorted({r["family"] for r in rows})
+def chosen(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+    """What the ships of the other families ask for, a family: thresholds that differ from those of before,
+    and the probability from which the logistic model names a cause. (Minutes.)"""
+    out = {}
+    for family in _families(rows):
+        others = [r for r in rows if r["family"] != family]
+        limit = working_point(others, logistic(*examples(others)))
+        out[family] = {"thresholds": _changed(moved(others)), "limit": limit}
+    return out
+
+
+def held_out(rows: Sequence[Row], asked_for: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """What becomes of each family with what the others ask for (`chosen`): the figures of the table as it
+    was before, with its thresholds moved, and of the logistic model; and the same of that by the probability
+    from which it names a cause."""
     held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
-    chosen: dict[str, Any] = {}
     curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
-    for family in families:
+    for family, of in asked_for.items():
         own, others = [r for r in rows if r["family"] == family], [r for r in rows if r["family"] != family]
-        with thresholds(BEFORE):
-            held["before"].append(outcome(own, by_table))
-        best = moved(others)
-        with thresholds(best):
-            held["thresholds moved"].append(outcome(own, by_table))
+        for name, moves in (("before", {}), ("thresholds moved", of["thresholds"])):
+            with thresholds(BEFORE | moves):
+                held[name].append(outcome(own, by_table))
         w = logistic(*examples(others))
-        limit = working_point(others, w)
-        held["logistic"].append(outcome(own, by_logistic(w, limit)))
-        chosen[family] = {"thresholds": _changed(best), "limit": limit, "weights": _weights(w)}
+        held["logistic"].append(outcome(own, by_logistic(w, of["limit"])))
         for t in np.round(np.arange(0.2, 0.99, 0.05), 2).tolist():
             curve.setdefault(t, []).append(outcome(own, by_logistic(w, t)))
-    w, asked = logistic(*examples(rows)), probability_fit.examples(rows)
-    probability_fit.write(asked, args.examples)
-    result = {
-        "voyages": len(rows),
+    return {
         "held_out": {name: added(each) for name, each in held.items()},
-        "chosen_by_family_held_out": chosen,
-        "probabilities": probability_fit.fitted(asked),
         "curve": {str(t): added(each) for t, each in curve.items()},
-        "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
     }
-    result["page"] = fitted_lines(result)
+
+
+def with_facts(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """The rows with their facts read, as all here asks for them."""
+    return [{**r, "read": read_facts(r)} for r in rows]
+
+
+def run(args: argparse.Namespace) -> int:
+    rows = with_facts(rows_of(args.folder))
+    asked_for, w = chosen(rows), logistic(*examples(rows))
+    result = held_out(rows, asked_for) | {
+        "voyages": len(rows),
+        "chosen_by_family_held_out": asked_for,
+        "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
+        "probabilities": probability_fit.fitted(probability_fit.examples(rows)),
+    }
+    result["page"] = fitted_lines(result) + probability_fit.page_lines(result["probabilities"])
     args.json.write_text(json.dumps(result, indent=1))
-    print("\n".join(fitted_lines(result)))
+    print("\n".join(result["page"]))
     return 0
+
+
+def _families(rows: Sequence[Row]) -> list[str]:
+    return sorted({r["family"] for r in rows})
 
 
 def _changed(best: Mapping[str, float]) -> dict[str, float]:
@@ -219,12 +233,11 @@ def _weights(w: np.ndarray) -> dict[str, float]:
 
 
 def fitted_lines(result: Mapping[str, Any]) -> list[str]:
-    """What was fitted, for the page."""
+    """What was fitted, for the page, in two sections."""
     held: Mapping[str, Mapping[str, str]] = result["held_out"]
     body = [(figure, *(held[name][figure] for name in held)) for figure in held["before"]]
     out = lines("The decision fitted, each family held out in turn", "", ("", *held), body)
     keys = ("single, gains", "pair and triple, gains", "wrong name", "healthy, named")
     text = "Of the logistic model with each family held out, by the probability from which a cause is named."
     curve = [(t, *(c[k] for k in keys)) for t, c in result["curve"].items()]
-    out += lines("Names against false alarms", text, ("from", *keys), curve)
-    return out + probability_fit.page_lines(result["probabilities"])
+    return out + lines("Names against false alarms", text, ("from", *keys), curve)

@@ -119,7 +119,9 @@ def _head(rows: Sequence[Row]) -> list[str]:
         f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream "
         "and swell on every voyage, a third of it not recorded; instruments with faults of their own; two "
         "to six reference voyages; no force in the twin's form. Weather that is named or told as today's "
-        "never counts against an answer. Intervals: 95 % (Wilson). Made from the rows of the first command:"
+        "never counts against an answer. Intervals: 95 % (Wilson). The rows, an answer each, are in "
+        "[fleet.csv](fleet.csv), with the facts of each in `fleet_facts.jsonl`; the last command makes the "
+        "page of them:"
     )
     return [
         "# The decision on ships of many forms",
@@ -128,8 +130,8 @@ def _head(rows: Sequence[Row]) -> list[str]:
         "",
         "```sh",
         "python -m bench.fleet run FOLDER --seeds 0-7 --voyages 8 --workers 16",
-        "python -m bench.fleet fit FOLDER --json fit.json",
-        "python -m bench.fleet table FOLDER --fit fit.json --page docs/results/judgement.md",
+        "python -m bench.fleet keep --first FOLDER",
+        "python docs/results_page.py",
         "```",
         "",
         *wrap(RIGHT, 108),
@@ -137,11 +139,11 @@ def _head(rows: Sequence[Row]) -> list[str]:
 
 
 def _figures(rows: Sequence[Row]) -> list[str]:
-    near = [there for r in rows for p, there in answer_score.answered_probabilities(r) if 0.85 <= p < 0.95]
+    near = [there for r in rows for p, there in answer_score.answered_posteriors(r) if 0.85 <= p < 0.95]
     held = [inside for r in rows for _, inside in answer_score.intervals(r)]
     now = figures([decided(r) for r in rows])
     body: list[tuple[object, ...]] = [(n, FIGURES[n][0], s, now[n]) for n, s in figures(rows).items()]
-    body.append(("causes told with 0.85 to 0.95 that are there", "85 to 95 %", share(near), ""))
+    body.append(("causes with a posterior of 0.85 to 0.95 that are there", "85 to 95 %", share(near), ""))
     body.append(("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", share(held), ""))
     text = (
         "As answered when they were asked, with the thresholds that were conventions; and decided again from "
@@ -208,15 +210,13 @@ def _said(r: Row) -> str:
 
 
 def _reliability(rows: Sequence[Row]) -> list[str]:
-    told, body = [x for r in rows for x in answer_score.answered_probabilities(r)], []
+    told, body = [x for r in rows for x in answer_score.answered_posteriors(r)], []
     for lo, hi in pairwise(BINS):
         own = [(p, there) for p, there in told if lo <= p < hi]
         if own:
             mean = float(np.mean([p for p, _ in own]))
             body.append((f"{lo:.2f} to {hi:.2f}", f"{mean:.2f}", share([there for _, there in own])))
-    text = (
-        "Each probability of 5 % or more that an answer tells of a cause, and how often the cause is there."
-    )
+    text = "The posterior of each cause that an answer tells, from 5 % on, and how often the cause is there."
     return lines("Reliability", text, ("told", "mean told", "there"), body)
 
 

@@ -4,17 +4,15 @@ Four questions (twin/study/diagnosis/calibrated_probability.py), each with a log
 in its facts: whether a cause of the explanation is there, one that the explanation does without, none at
 all, one without a name. An answer is held against what was hidden."""
 
-import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
 
-from bench.fleet.answer_score import BY_NOW, Row, causes, share
+from bench.fleet.answer_score import BY_NOW, Row, causes, posterior, share
 from bench.fleet.fleet_page import lines
 from twin.study.diagnosis.calibrated_probability import FACTS, log_odds
 from twin.study.diagnosis.decision import Decision, decide
@@ -56,7 +54,7 @@ def of_causes(row: Row) -> list[FactsAndTruth]:
 def _of_causes_beside(row: Row) -> list[FactsAndTruth]:
     within = {c.effect for c in row["read"].causes if c.in_explanation}
     return [
-        ([log_odds(c.get("posterior", c["probability"]))], c["effect"] in _hidden(row))
+        ([log_odds(posterior(c))], c["effect"] in _hidden(row))
         for c in row["candidates"]
         if c and c["effect"] not in within and causes([c["effect"]])
     ]
@@ -113,24 +111,6 @@ def examples(rows: Sequence[Row]) -> list[AnswerExample]:
         for name, question in QUESTIONS.items()
         for facts, so in question.of(row)
     ]
-
-
-def write(found: Sequence[AnswerExample], path: Path) -> None:
-    """The examples as a table, from which the weights can be fitted again."""
-    with path.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(("question", "family", "so", "facts"))
-        for e in found:
-            table.writerow((e.question, e.family, int(e.so), " ".join(f"{x:.4g}" for x in e.facts)))
-
-
-def read(path: Path) -> list[AnswerExample]:
-    """The examples of such a table."""
-    with path.open(newline="") as file:
-        return [
-            AnswerExample(r["question"], r["family"], [float(x) for x in r["facts"].split()], r["so"] == "1")
-            for r in csv.DictReader(file)
-        ]
 
 
 def _arrays(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:

@@ -17,7 +17,7 @@ from bench.league.league_voyages import BATCH, forget, sail
 from bench.league.plan import Question
 
 PART = 60  # questions whose voyages are sailed before they are judged
-FULL: dict[str, Any] = {"hulls": plan.HULLS, "seeds": 5, "strengths": plan.STRENGTHS}
+FULL_ROUND: dict[str, Any] = {"hulls": plan.HULLS, "seeds": 5, "strengths": plan.STRENGTHS}
 QUICK: dict[str, Any] = {"hulls": ("kvlcc2",), "seeds": 1, "strengths": (1.0,)}
 
 
@@ -25,7 +25,7 @@ class League:
     """Rounds of questions: sail them, judge them, write each answer down, forget the voyages."""
 
     def __init__(self, args: argparse.Namespace, folder: Path) -> None:
-        quick = QUICK if args.quick else FULL
+        quick = QUICK if args.quick else FULL_ROUND
         self.hulls: Sequence[str] = args.hull or quick["hulls"]
         self.strengths: Sequence[float] = args.strength or quick["strengths"]
         self.fleet, self.jobs = (args.duration, args.references, not args.quick), args.jobs

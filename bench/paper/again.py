@@ -20,7 +20,7 @@ EPILOG = """example: twin-bench gap --work .paper --markdown docs/results/gap.md
 Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Exit
 code 0: the table is made.
 """
-APART = 10_000  # seeds between one sailing and the next
+SEED_STRIDE = 10_000  # seeds between one sailing and the next
 PAIRS = {
     "validation to test, as in the paper": ("validation", "test"),
     "the same two parts sailed again": ("validation again", "test again"),
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    result = compare(args.work, paper_voyages.FULL if args.full else paper_voyages.QUICK, args.times)
+    result = compare(args.work, paper_voyages.FULL_PLAN if args.full else paper_voyages.QUICK, args.times)
     bench_output.give(args, result, "\n".join(page(result, args.full)))
     return 0
 
@@ -87,7 +87,7 @@ def again(cases: Sequence[Any], train: int, validation: int, times: int) -> dict
     """The runs of both parts with other seeds, `times` over."""
     parts = {"validation again": cases[train : train + validation], "test again": cases[train + validation :]}
     return {
-        name: [replace(c, seed=c.seed + APART * (k + 1)) for k in range(times) for c in some]
+        name: [replace(c, seed=c.seed + SEED_STRIDE * (k + 1)) for k in range(times) for c in some]
         for name, some in parts.items()
     }
 

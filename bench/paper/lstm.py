@@ -12,7 +12,7 @@ from bench.paper.lab import LabCourse, grounded
 from export.batches import STRIDE, shuffled
 from export.data import TrainingLeg
 from export.settings import TrainingSettings
-from export.training_course import FEWEST
+from export.training_course import LEAST_VALIDATION
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
 # in an epoch at least, as the hybrid has them: batches are smaller where there is less to learn from
@@ -129,7 +129,7 @@ def train(
             1.0 - 1.0 / (1.0 + TrainingSettings.average * max(1, many // batch))
         ),
     )
-    best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= FEWEST
+    best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= LEAST_VALIDATION
     for epoch in range(epochs):
         for k in shuffled(many, batch, 7919 * seed + epoch):
             loss = _loss(model, [x[..., k, :] if x.ndim > 1 else x[k] for x in data], h, size)

@@ -55,7 +55,7 @@ class Models:
     """Every model as a function of courses, and what is to be told of how it came about."""
 
     predict: dict[str, Predict] = field(default_factory=dict)
-    told: dict[str, Any] = field(default_factory=dict)
+    about: dict[str, Any] = field(default_factory=dict)
     # of every seed: the hybrid, and that on named physics
     seeds: dict[str, dict[int, Predict]] = field(default_factory=dict)
     # validation loss by epoch, of every seed
@@ -126,7 +126,7 @@ def build(
     """Train, fit and tune everything."""
     out, shop, plain = Models(), Workshop.of(lessons, settings, work, tell), Model(nominal())
     out.shop, out.plain = shop, plain
-    out.told["parts"] = {name: len(some) for name, some in shop.parts.items()}
+    out.about["parts"] = {name: len(some) for name, some in shop.parts.items()}
     out.predict["analytic"] = lambda cs: free(plain, None, cs, "earth")
     out.predict["analytic_current"] = lambda cs: free(plain, None, cs)
     _filtered(out, shop, plain)
@@ -140,7 +140,7 @@ def _filtered(out: Models, shop: Workshop, plain: Model) -> None:
     """The EKF of the paper's comparison."""
     shop.tell("tuning the EKF")
     walk, keep = tuned_ekf.tuned(shop.parts["validation"], plain)  # type: ignore[arg-type]
-    out.told["ekf"] = {"walk": walk, "disturbance_kept_in_prediction": keep}
+    out.about["ekf"] = {"walk": walk, "disturbance_kept_in_prediction": keep}
     out.predict["ekf"] = lambda cs: tuned_ekf.predict(cs, plain, walk, keep)
 
 
@@ -152,7 +152,7 @@ def _sequence(out: Models, shop: Workshop, epochs: int, seed: int) -> None:
     out.curves["lstm"] = [lstm.curve]
     file = paper_lstm_onnx.to_onnx(lstm)
     (shop.work / "lstm.onnx").write_bytes(file)
-    out.told["lstm"] = {
+    out.about["lstm"] = {
         "epochs": len(lstm.curve),
         "torch_onnx_difference": paper_lstm_onnx.disagreement(lstm, file),
     }
@@ -170,12 +170,12 @@ def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) ->
     out.network = first.network
     out.acting = Acting(first.network, plain, zeta_of(first.network, first.samples))
     out.predict["hybrid"] = out.seeds["hybrid"][seeds[0]]
-    out.told["hybrid"] = _about(plain, first) | {
+    out.about["hybrid"] = _about(plain, first) | {
         "filter": asdict(out.tuning),
         "apart": apart(shop.parts["test"], plain, first.network),
     }
     told = {"hybrid": out.predict["hybrid"], "analytic_current": out.predict["analytic_current"]}
-    out.told["gap"] = gap(told, shop.parts["validation"], shop.parts["test"])
+    out.about["gap"] = gap(told, shop.parts["validation"], shop.parts["test"])
     out.predict["hybrid_smooth"] = lambda cs: free(plain, first.network, cs)
     out.predict["hybrid_adapted"] = lambda cs: paper_adapted.predict(cs, plain, out.acting, out.tuning)  # type: ignore[arg-type]
 
@@ -184,7 +184,7 @@ def _named(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> N
     """What has a name first, then a network on top."""
     shop.tell("calibrating the core, then adding " + ", ".join(NAMED))
     core, added = named(shop.parts["train"], plain)
-    out.told["added"] = {
+    out.about["added"] = {
         type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects
     }
     for name, model in (("calibrated", core), ("physics_added", added)):
@@ -192,7 +192,7 @@ def _named(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> N
     taught = {seed: shop.taught(added, seed, "added") for seed in seeds}
     first = taught[seeds[0]]
     tuning, both = shop.tuned(added, first.network), "physics_added_hybrid"
-    out.told[both] = _about(added, first) | {"apart": apart(shop.parts["test"], added, first.network)}
+    out.about[both] = _about(added, first) | {"apart": apart(shop.parts["test"], added, first.network)}
     out.seeds[both] = {seed: _started(added, one.network, tuning) for seed, one in taught.items()}
     out.predict[both] = out.seeds[both][seeds[0]]
 

@@ -48,7 +48,7 @@ class PaperPlan:
 
 
 QUICK = PaperPlan(15, 2, 1, 1, (20,), (3,), 2, (42,), 25, 12, 64, 30)
-FULL = PaperPlan(72, 15, 5, 5)
+FULL_PLAN = PaperPlan(72, 15, 5, 5)
 SPEEDS = {
     "Maneuvering": 0.333,
     "Cruising": 0.677,

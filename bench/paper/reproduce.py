@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory() as nowhere:
         work = args.work or (Path(".paper") if args.full else Path(nowhere))
         result = reproduce(
-            paper_voyages.FULL if args.full else paper_voyages.QUICK, work, not args.full, args.figures
+            paper_voyages.FULL_PLAN if args.full else paper_voyages.QUICK, work, not args.full, args.figures
         )
     if tick:
         result["tables"]["9"] = tick
@@ -105,7 +105,7 @@ def reproduce(
         "quick": quick,
         "tables": tables,
         "ratios": paper_tables.ratios(tables["3"]),
-        "models": models.told,
+        "models": models.about,
         "counts": {name: len(some) for name, some in courses.items()},
         "scenarios": list(paper_voyages.SCENARIOS),
         "cpu_seconds": round(time.process_time() - began, 1),

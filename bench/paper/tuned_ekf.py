@@ -19,7 +19,7 @@ from twin.physics.state import Force, Situation
 from twin.study.track.track import READINGS
 
 WALKS = (1e-6, 1e-5, 1e-4)  # of the disturbance, in units of U/T for one grid step
-SEEN = [READINGS.index(n) for n in ("x", "y", "psi", "u_r", "v_r", "r")]
+MEASURED_STATES = [READINGS.index(n) for n in ("x", "y", "psi", "u_r", "v_r", "r")]
 NUDGE = np.array([0.1, 0.1, 1e-4, 1e-3, 1e-3, 1e-6])
 
 
@@ -42,20 +42,20 @@ class Careful(ShipFilter):
 
 def filtered(c: LabCourse, model: Model, walk: float) -> np.ndarray:
     """(W, 9) the filter's state at the starts of the windows."""
-    view, measured = c.water, c.floating.measured[:, SEEN]
+    view, measured = c.water, c.floating.measured[:, MEASURED_STATES]
     inputs = {
         name: x
         for name, x in view.inputs.items()
         if name in ("delta", "n", "wind_speed", "wind_to", "H_s", "T_p", "wave_to")
     }
-    kalman = Careful(model, Situation(), view.h, c.floating.sd[SEEN], walk)
+    kalman = Careful(model, Situation(), view.h, c.floating.sd[MEASURED_STATES], walk)
     kalman.x[:6], kept = view.state[0], {}
     for k in range(int(c.starts[-1]) + 1):
         if k:
             kalman.s = Situation(**{name: float(0.5 * (x[k - 1] + x[k])) for name, x in inputs.items()})
             kalman.predict()
         there = np.isfinite(measured[k])
-        kalman.R[np.diag_indices(6)] = np.where(there, c.floating.sd[SEEN] ** 2, 1e9)
+        kalman.R[np.diag_indices(6)] = np.where(there, c.floating.sd[MEASURED_STATES] ** 2, 1e9)
         kalman.update(
             np.where(there, measured[k], kalman.x[:6]), HJacobian=kalman._jacobian, Hx=kalman._expected
         )

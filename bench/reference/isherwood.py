@@ -8,7 +8,7 @@ Source: Isherwood (1972), Wind resistance of merchant ships, Trans. RINA 115, 32
 import numpy as np
 
 RHO_AIR = 1.224
-STEP = 10.0
+TABLE_STEP_DEG = 10.0
 _A = """2.152 -5.00 .243 -.164 0 0 0|1.714 -3.33 .145 -.121 0 0 0|1.818 -3.97 .211 -.143 0 0 .033
 |1.965 -4.81 .243 -.154 0 0 .041|2.333 -5.99 .247 -.190 0 0 .042|1.726 -6.54 .189 -.173 .348 0 .048
 |.913 -4.68 0 -.104 .482 0 .052|.457 -2.88 0 -.068 .346 0 .043|.341 -.91 0 -.031 0 0 .032
@@ -47,7 +47,7 @@ def table(hull):
 def force(h, tables, u_air, v_air):
     """X, Y, N, K of air that comes from (u_air ahead, v_air starboard) [m/s]; tables (B, 3, 19)."""
     speed2 = u_air**2 + v_air**2
-    angle = np.abs(np.degrees(np.arctan2(v_air, u_air))) / STEP
+    angle = np.abs(np.degrees(np.arctan2(v_air, u_air))) / TABLE_STEP_DEG
     low = np.minimum(angle.astype(int), 17)
     rest, rows = angle - low, np.arange(len(low))
     near, far = tables[rows, :, low].T, tables[rows, :, low + 1].T

@@ -183,7 +183,7 @@ class AdversaryFleet:
         d = np.array(c.push) @ self.limit[:, 0] + c.calm + turned * (self.heading_noise - c.heading_noise)
         E = V @ self.tube + d[:, None]
         self.before.append(E)
-        told = np.array(step.told(tuple(d.tolist()), self.stated))
+        told = np.array(step.left_by(tuple(d.tolist()), self.stated))
         seen = (
             now @ self.tube
             + again[:, None] * np.max(self.before, axis=0)

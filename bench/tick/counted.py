@@ -25,7 +25,7 @@ from twin.physics.state import Situation
 
 SHIP, RATE_HZ, WALL_S = "kvlcc2", 50.0, 1.7e9
 EVERY = 5  # ticks: the instruments speak ten times a second
-MOST = 100  # ticks for which there are messages
+MAX_TICKS = 100  # ticks for which there are messages
 Step = Callable[[], object]
 
 
@@ -48,10 +48,10 @@ def network() -> Step:
 def tick() -> Step:
     """One whole tick at 50 Hz: decode, gates, observer, forces, adaptation, prediction, certificate,
     records."""
-    return _ticks(MOST)[1]
+    return _ticks(MAX_TICKS)[1]
 
 
-def hybrid(most: int = MOST) -> Step:
+def hybrid(most: int = MAX_TICKS) -> Step:
     """What a peer does too, on the measurements of `most` such ticks: correct, known force, learned force,
     adapt, one step on."""
     (before, step), (loop, _) = _ticks(most), _ticks(0)

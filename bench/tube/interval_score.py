@@ -21,7 +21,7 @@ from twin.physics.ship import Ship
 from twin.study.reference.foretold import Errors
 from twin.study.reference.tube_calibration import section
 
-LEAST = 9  # voyages of which a row is made
+LEAST_VOYAGES = 9  # voyages of which a row is made
 EVERY = "every"
 
 
@@ -113,7 +113,7 @@ def _rows(
         groups += [(f"{of} {n}", [[k for k in v if getattr(k, of) == n] for v in voyages]) for n in names]
     for name, group in groups:
         used = [v for v in group if v]
-        if len(used) >= LEAST:
+        if len(used) >= LEAST_VOYAGES:
             yield _row(h, name, used, float(np.mean(rests)))
 
 

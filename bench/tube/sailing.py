@@ -29,7 +29,7 @@ HORIZONS_S = (10.0, 60.0, 120.0)
 STEP_S = {"kvlcc2": 0.2, "container": 0.2, "kvlcc2_model": 0.1, "usv": 0.1}  # of the loop
 SECONDS = {"kvlcc2": 600.0, "container": 600.0, "kvlcc2_model": 300.0, "usv": 300.0}
 BATCH = 16
-APART = 3  # of the predictions on file, one in each round of 2 s, one in so many is judged
+ROUNDS_PER_VERDICT = 3  # of the predictions on file, one in each round of 2 s, one in so many is judged
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def reckoned(e: Estimate, p: Prediction) -> Prediction:
 def on_file(folder: Path, hull: str, k: int) -> TubeVoyage:
     kept = json.loads(_path(folder, hull, k).read_text())
     model, reckoning = (
-        {float(h): [_verified(row) for row in rows[::APART]] for h, rows in kept[who].items()}
+        {float(h): [_verified(row) for row in rows[::ROUNDS_PER_VERDICT]] for h, rows in kept[who].items()}
         for who in ("model", "reckoning")
     )
     return TubeVoyage(hull, k, kept["H_s"], model, reckoning)

@@ -31,13 +31,13 @@ def calm(tmp_path_factory):
 
 
 def test_the_paper_sails_648_000_samples():
-    cases = paper_sea.lessons(paper_sea.FULL)
+    cases = paper_sea.lessons(paper_sea.FULL_PLAN)
     assert sum(c.duration_s for c in cases) * 10 == 648_000
     assert [c.weather for c in cases[:4]] == ["TS-01", "TS-02", "TS-03", "TS-01"]
 
 
 def test_what_is_learned_from_and_what_is_judged_on_have_no_seed_in_common():
-    plan = paper_sea.FULL
+    plan = paper_sea.FULL_PLAN
     judged = [c for cases in (paper_sea.changed(plan) | paper_sea.by_speed(plan)).values() for c in cases]
     judged += paper_sea.unseen(plan)
     assert not {c.seed for c in paper_sea.lessons(plan)} & {c.seed for c in judged}
@@ -137,7 +137,7 @@ def test_without_gnss_noise_the_place_is_the_truth_of_a_moment_ago(tmp_path):
 def test_validation_and_test_are_as_hard_as_each_other_by_their_plan():
     """Expected: the same manoeuvres, seas and speeds among the runs that say when to stop and those that
     never did, but for the one run more that 72 leave over."""
-    parts = split(paper_sea.lessons(paper_sea.FULL))
+    parts = split(paper_sea.lessons(paper_sea.FULL_PLAN))
     kinds = {
         n: Counter(x for c in cases for x in (c.manoeuvre, c.weather, c.speed_fraction))
         for n, cases in parts.items()

@@ -12,7 +12,7 @@ from bench.paper.gap import among_like, change_of
 
 
 def test_what_is_sailed_again_is_the_same_but_for_seeds_that_nobody_had():
-    cases = paper_voyages.lessons(paper_voyages.FULL)
+    cases = paper_voyages.lessons(paper_voyages.FULL_PLAN)
     made = again(cases, 45, 13, 3)
     assert len(made["validation again"]) == 39 and len(made["test again"]) == 42
     for part, some in (("validation again", cases[45:58]), ("test again", cases[58:])):

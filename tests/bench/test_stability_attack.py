@@ -7,7 +7,7 @@ import pytest
 
 from bench.stability.attack.adversary_search import GREEDY, PASSES, RANDOM, STEEPEST, attack, horizon
 from bench.stability.attack.bounds import bounds
-from bench.stability.attack.cases import FULL, INSIDE, AttackCase, Excess, Group, certified_for
+from bench.stability.attack.cases import FULL_RUN, INSIDE, AttackCase, Excess, Group, certified_for
 from bench.stability.attack.orders import ages_of, random_orders
 from bench.stability.attack.run_batch import sail
 from bench.stability.attack.section import HEAD, section_of, with_section
@@ -84,7 +84,7 @@ def test_ages_stay_within_what_a_group_is_allowed():
     most = max(c.delays)
     assert ages_of(c, Group(0.0)).tolist() == [0.0]
     assert max(ages_of(c, Group(0.5))) == 0.5 * most and max(ages_of(c, OLDEST)) == most
-    assert max(ages_of(c, Group(1.0, FULL, Excess(delay=1.5)))) == 1.5 * most
+    assert max(ages_of(c, Group(1.0, FULL_RUN, Excess(delay=1.5)))) == 1.5 * most
     assert horizon(c) * c.h * c.K[0] > 2.0
 
 

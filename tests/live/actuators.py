@@ -77,7 +77,7 @@ class Afloat:
         return actuator_orders(self.ship, radians(9.0) * sin(2.0 * pi * self.t / 40.0), 0.75)
 
     def advance(self):
-        self.state = self.model.step(self.state, Situation(told=self.orders()), STEP_S)
+        self.state = self.model.step(self.state, Situation(orders=self.orders()), STEP_S)
         self.t += STEP_S
 
     def says(self) -> dict[str, float]:

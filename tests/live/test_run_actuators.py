@@ -43,14 +43,14 @@ def test_the_loop_follows_a_ship_of_actuators_and_foretells_it_with_them_held(ma
     while not service.run(0.1).predictions:
         pass
     service.run(0.1)  # the next round begins in this tick
-    began, told = service.truth, dict(service.loop.last.situation.told)
+    began, told = service.truth, dict(service.loop.last.situation.orders)
     started_s = service.ticks[-1].time_s
     while not (ahead := list(service.run(0.1).predictions)):
         pass
     state, model = began, Model.of(service.afloat.ship)
     span = ahead[0].horizon_s + service.ticks[-1].time_s - started_s
     for _ in range(round(span / 0.1)):
-        state = model.step(state, Situation(told=told), 0.1)
+        state = model.step(state, Situation(orders=told), 0.1)
     off = hypot(ahead[0].state.surge_velocity_mps - state[3], ahead[0].state.sway_velocity_mps - state[4])
     assert off < 0.03 * service.loop.ship.U_0
     assert abs(degrees(state[5]) - ahead[0].state.yaw_rate_degps) < 1.0
@@ -103,11 +103,11 @@ def test_I23_a_lost_feedback_of_one_actuator_is_held_and_named_and_never_zero(ma
     mode steps down; its name in the reasons, in what the bus says; all well when it is heard again."""
     service = make(*PODS, by_bus=True)
     service.run(20.0)
-    before = service.loop.last.situation.told["port.rate"]
+    before = service.loop.last.situation.orders["port.rate"]
     said = set()
     for _ in range(300):
         tick = service.run(0.1, lambda said: {c: x for c, x in said.items() if c != "port.rate_rpm"})
-        assert service.loop.last.situation.told["port.rate"] == pytest.approx(before, rel=1e-6)
+        assert service.loop.last.situation.orders["port.rate"] == pytest.approx(before, rel=1e-6)
         said.add(tick.mode)
     assert said == {"physics only", "dead reckoning"} and tick.mode == "dead reckoning"
     told = next(text for text in tick.reasons if "is held" in text)
@@ -126,7 +126,7 @@ def test_I23_a_lost_feedback_of_one_actuator_is_held_and_named_and_never_zero(ma
 def test_an_actuator_of_which_nothing_was_ever_heard_stands_still(make):
     service = make(*SIDES)
     tick = service.run(5.0, lambda said: {c: x for c, x in said.items() if c != "port.pwm_us"})
-    assert service.loop.last.situation.told["port.pwm"] == 1500.0
+    assert service.loop.last.situation.orders["port.pwm"] == 1500.0
     assert not any("is held" in text for text in tick.reasons) and "no port.pwm_us" in tick.reasons[0]
 
 
@@ -161,7 +161,7 @@ def test_an_actuator_that_answers_late_is_where_its_order_was(make):
     seen = []
     for _ in range(6):
         service.run(0.1, lambda said: said | {"port.rate_rpm": 900.0, "fore.rate_rpm": 900.0})
-        told = service.loop.last.situation.told
+        told = service.loop.last.situation.orders
         seen.append((round(60.0 * told["fore.rate"]), round(60.0 * told["port.rate"])))
     assert [x for x, _ in seen] == [900] * 6
     assert [y for _, y in seen] == [600, 600, 600, 900, 900, 900]

@@ -53,7 +53,7 @@ def test_a_propeller_with_its_rudder_as_a_part_gives_the_same_to_the_last_digit(
     for n, delta in ((1.2, 0.2), (0.6, -0.4), (-0.5, 0.1)):
         before = Model(load("kvlcc2")).nu_dot(Situation(u=7.0, v=0.4, r=0.003, delta=delta, n=n))
         told = {"main.rate": n, "main.angle": delta}
-        assert Model(single_screw_as_part()).nu_dot(Situation(u=7.0, v=0.4, r=0.003, told=told)) == before
+        assert Model(single_screw_as_part()).nu_dot(Situation(u=7.0, v=0.4, r=0.003, orders=told)) == before
 
 
 def test_a_ship_file_without_actuators_has_no_line_of_them():
@@ -146,7 +146,7 @@ def test_an_effect_is_of_one_named_actuator():
     told = {"port.command": 0.5, "starboard.command": 0.5}
     worn = find("ThrusterWear.port")(loss=0.18)
     worn.check(ship)
-    s = Situation(**MOTION, told=told)
+    s = Situation(**MOTION, orders=told)
     forces = Model(ship, (worn,)).known(s)
     assert pytest.approx(-0.18 * forces["port"].X) == forces["ThrusterWear.port"].X
     assert pytest.approx(-0.18 * forces["port"].N) == forces["ThrusterWear.port"].N
@@ -160,13 +160,13 @@ def test_a_worn_rudder_leaves_the_thrust_of_the_screw_before_it():
         {"name": "port", "kind": "propeller", "channels": ["rate_rev_s", "angle_deg"], **own},
         PORT | {"name": "bow"},
     )
-    worn, s = find("SteeringWear.port")(loss=0.25), Situation(**MOTION, told={"bow.command": 0.0})
+    worn, s = find("SteeringWear.port")(loss=0.25), Situation(**MOTION, orders={"bow.command": 0.0})
     told = {"bow.command": 0.0, "port.rate": 9.0}
     for angle in (0.0, 0.3):
-        s.told = told | {"port.angle": angle}
+        s.orders = told | {"port.angle": angle}
         forces = Model(ship, (worn,)).known(s)
         straight = ship.actuator("port").but(A_R=0.0)
-        screw = straight.force(s.told, s.u_r, s.v_r, s.r, ship)
+        screw = straight.force(s.orders, s.u_r, s.v_r, s.r, ship)
         for axis, thrust in zip(("X", "Y", "N"), screw, strict=True):
             rudder = getattr(forces["port"], axis) - thrust
             assert getattr(forces["SteeringWear.port"], axis) == pytest.approx(-0.25 * rudder)
@@ -176,7 +176,7 @@ def test_a_worn_rudder_leaves_the_thrust_of_the_screw_before_it():
 def test_an_angle_offset_turns_what_the_azimuth_does():
     ship = ship_with(PORT | {"kind": "azimuth", "channels": ["thrust_n", "angle_deg"]})
     effect = find("AngleOffset.port")(offset=radians(6.0))
-    s = Situation(told={"port.thrust": 10.0, "port.angle": 0.5 * pi})
+    s = Situation(orders={"port.thrust": 10.0, "port.angle": 0.5 * pi})
     got, turned = effect.force(s, ship), 0.5 * pi + radians(6.0)
     assert pytest.approx(10.0 * np.cos(turned)) == got.X and pytest.approx(10 * np.sin(turned) - 10) == got.Y
 

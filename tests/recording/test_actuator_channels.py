@@ -48,7 +48,7 @@ def test_what_is_no_channel_of_an_actuator_is_none():
 def test_the_track_holds_what_the_ship_file_lists_and_names_what_is_not_there():
     ship = from_table(to_table(load("usv")) | {"actuators": [PORT]})
     found = track(voyage(), ship)
-    assert set(found.told) == {"port.command"} and not found.delta.any()
+    assert set(found.orders) == {"port.command"} and not found.delta.any()
     other = from_table(to_table(load("usv")) | {"actuators": [PORT | {"name": "stern"}]})
     with pytest.raises(DataError, match=r"no stern\.command"):
         track(voyage(), other)

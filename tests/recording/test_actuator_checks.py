@@ -57,4 +57,4 @@ def test_a_stop_at_another_pulse_is_read_from_where_the_boat_lies_still():
 
 def test_without_a_ship_file_with_actuators_it_says_what_it_needs():
     found = answer(sailed("thrusters", SEED), None)
-    assert found.ok and not found.told and "--ship" in found.text
+    assert found.ok and not found.informative and "--ship" in found.text

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from tests import command_lines
 from twin.cli import main
 from twin.commands import import_ as verb
 from twin.errors import DataError, SettingsError
@@ -29,9 +30,7 @@ def test_a_check_that_cannot_tell_is_not_marked_ok(sail, write_csv, tmp_path, ca
 
 def test_the_reference_voyage_of_a_new_ship_is_for_her_calibration(sail, write_csv, tmp_path, capsys):
     ship, out = tmp_path / "alma.toml", tmp_path / "v.mcap"
-    main(
-        ["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(ship)]
-    )
+    assert main(command_lines.init("MV Alma", "-o", ship)) == 0
     assert (
         run(
             write_csv(sail()),

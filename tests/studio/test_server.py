@@ -9,6 +9,7 @@ import time
 import anyio
 import pytest
 
+from tests import command_lines
 from twin.studio.app import Studio
 from twin.studio.project import Project
 
@@ -232,23 +233,7 @@ def test_a_first_model_is_tried_and_written_as_twin_init_writes_it(client, proje
     from twin.cli import main
 
     other = project.folder / "other.toml"
-    assert (
-        main(
-            [
-                "init",
-                "MV Alma",
-                "--length-pp-m",
-                "180",
-                "--beam-m",
-                "30",
-                "--draught-m",
-                "10.5",
-                "-o",
-                str(other),
-            ]
-        )
-        == 0
-    )
+    assert main(command_lines.init("MV Alma", "-o", other)) == 0
     assert (project.folder / "alma.toml").read_text() == other.read_text()
     status, said = client.json("/api/ships/try", {"name": "x", "values": values | {"beam-m": 300}})
     assert status == 400 and "--beam-m 300 lies outside" in said["said"]

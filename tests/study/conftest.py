@@ -77,20 +77,22 @@ def sail(
     step: float = STEP_S,
     noise: float = 1.0,
     wind: float | None = None,
+    veer: float = 0.0,
     name: str = "made",
     of: Ship | None = None,
 ) -> Voyage:
     """Turns and straight legs of a ship with these effects, measured with noise; `wind` [m/s] from the east,
-    if measured."""
+    if measured, that turns by `veer` [rad] on the voyage, clockwise."""
     model, rng = Model.of(of or ship()).but(*effects), np.random.default_rng(seed)
     t = np.arange(0.0, seconds, step)
     legs = np.repeat(rng.choice([-20.0, -10.0, 0.0, 10.0, 20.0], t.size), rng.integers(50, 130, t.size))
     order = legs[: t.size]
     rudder = np.radians(np.convolve(np.pad(order, (5, 5), "edge"), np.ones(11) / 11.0, "valid"))  # 2.2 deg/s
     n = np.interp(t, [0.6 * seconds, 0.6 * seconds + 120.0], [1.6, 1.25])
-    seas = {} if wind is None else {"wind_speed": wind, "wind_to": np.pi * 1.5}
+    to = 1.5 * np.pi + veer * t / seconds
     rows, state = [], (0.0, 0.0, 0.3 * seed, 7.0, 0.0, 0.0)
     for k in range(t.size):
+        seas = {} if wind is None else {"wind_speed": wind, "wind_to": to[k]}
         s = Situation(delta=rudder[k], n=n[k], t=t[k], **seas)
         half = Situation(delta=rudder[k : k + 2].mean(), n=n[k : k + 2].mean(), t=t[k] + 0.5 * step, **seas)
         s.x, s.y, s.psi, s.u, s.v, s.r = state
@@ -119,7 +121,7 @@ def sail(
     if wind is not None:
         columns |= {
             "true_wind_speed_mps": np.full(t.size, wind),
-            "true_wind_direction_deg": np.full(t.size, 90.0),
+            "true_wind_direction_deg": np.mod((to - np.pi) * DEG, 360.0),
         }
     return Voyage(name, t, columns, {"start_time_utc": f"2026-05-0{1 + seed % 9}T08:00:00Z"})
 

@@ -1,5 +1,5 @@
 """Effects of somebody else's package, installed from a wheel: one of the ship, one of an instrument, one of the
-weather. All are candidates; the one of the ship is diagnosed and added like ours."""
+weather. A calibration keeps what is usual of them, and each is diagnosed and added like ours."""
 
 import json
 import os
@@ -87,30 +87,43 @@ class RotorSail(Force):
         return ForceVector(X=q * v, Y=-q * u)
 '''
 FILES = {"__init__": "", "derrick": DERRICK, "gyro_scale": GYRO_SCALE, "rotor_sail": ROTOR_SAIL}
-# how many prior widths of it are hidden, and the wind that is recorded [m/s]
-HIDDEN = {"Derrick": (3.0, None)}
+# prior widths of it that are hidden, and the wind that is recorded [m/s], which turns by half a circle: across a
+# steady one a rotor sail is a pull from a fixed bearing
+HIDDEN = {"Derrick": (3.0, None), "GyroScale": (3.0, None), "RotorSail": (3.0, 16.0)}
 SAIL = """
 import json, sys
+from math import pi
 import twin
 from tests.study.conftest import ship, voyage
 from twin.physics.effects import find
 
-def sick(name, widths, wind, seed):
-    effect = find(name)
-    number = effect.params()[0]
-    there = effect(**{number.name: widths * number.sd * number.scale(ship())})
-    return voyage(there, seed=seed, wind=wind, seconds=500.0, name=f"{name}{seed}")
+TRUE = ship().with_derivatives(X_uu=1.3 * ship().derivatives.X_uu)
+
+def sailed(*effects, seed, wind, seconds=600.0):
+    return voyage(*effects, of=TRUE, seed=seed, wind=wind, veer=pi, seconds=seconds, name=f"voyage{seed}")
 """
+CALIBRATE = (
+    SAIL
+    + """
+fit = twin.calibrate(ship(), sailed(seed=1, wind=9.0), held_out=sailed(seed=2, wind=9.0))
+fit.ship.save(sys.argv[1])
+usual = fit.ship.notes["structural"]
+print(json.dumps({"labels": usual["labels"], "weather": usual["weather"]}))
+"""
+)
 JUDGE = (
     SAIL
     + """
 name, widths, wind = json.loads(sys.argv[1])
-voyage, other = (sick(name, widths, wind, seed) for seed in (3, 4))
-found = twin.diagnose(ship(), voyage)
-better = twin.add(ship(), name, voyage, held_out=other)
+ours, size = twin.Ship.load(sys.argv[2]), find(name).params()[0]
+hidden = widths * size.sd * size.scale(ours)
+short, other = (
+    sailed(find(name)(**{size.name: hidden}), seed=seed, wind=wind, seconds=seconds)
+    for seed, seconds in ((3, 450.0), (4, 700.0))
+)
+found = twin.diagnose(ours, short)
+better = twin.add(ours, name, short, held_out=other)
 (number,) = better.data["parameters"][name].values()
-size = find(name).params()[0]
-hidden = widths * size.sd * size.scale(ship())
 print(json.dumps({"named": found.effects, "accepted": better.accepted, "number": number, "hidden": hidden}))
 """
 )
@@ -144,11 +157,27 @@ def told(env, script, *words):
     return json.loads(done.stdout.splitlines()[-1])
 
 
+@pytest.fixture(scope="module")
+def calibrated(installed, tmp_path_factory):
+    """(ship file, what is usual of it) of a calibration on two voyages on which nothing is hidden; the ship has
+    more resistance than its file had."""
+    file = str(tmp_path_factory.mktemp("calibrated") / "ship.toml")
+    return file, told(installed, CALIBRATE, file)
+
+
+def test_a_calibration_keeps_what_is_usual_of_the_effects_of_others(calibrated):
+    """Expected: how much of an effect of the ship or of an instrument a healthy ship shows is in its file, by its
+    numbers; of the weather how strong it was, without a number, for tomorrow's is another one."""
+    usual = calibrated[1]
+    owners = {label.partition(".")[0] for label in usual["labels"]}
+    assert {"Derrick", "GyroScale"} <= owners and "RotorSail" not in owners
+    assert usual["weather"]["RotorSail"] > 0.0
+
+
 @pytest.mark.parametrize("name", HIDDEN)
-def test_an_effect_of_others_is_named_and_added_like_ours(installed, name):
+def test_an_effect_of_others_is_named_and_added_like_ours(installed, calibrated, name):
     """Test: hidden in two voyages, the catalogue otherwise ours. Expected: it alone is named; added, what was
     held out is likelier, and its interval holds the size that was hidden."""
-    widths, wind = HIDDEN[name]
-    found = told(installed, JUDGE, json.dumps([name, widths, wind]))
+    found = told(installed, JUDGE, json.dumps([name, *HIDDEN[name]]), calibrated[0])
     assert found["named"] == [name] and found["accepted"]
     assert found["number"]["low95"] <= found["hidden"] <= found["number"]["high95"]

@@ -225,7 +225,7 @@ CALIBRATE = (
     *CHECKS,
     *COMMAND,
 )
-SEEN = "a fault was seen"
+WHEN_FAULTY = "a fault was seen"
 VALUE_SD = (JsonKey("value", "s", "how much later"), JsonKey("sd", "s", "standard error"))
 INSTRUMENTS = (
     JsonKey("schema_version", "", "version of this format"),
@@ -238,10 +238,12 @@ INSTRUMENTS = (
     JsonKey("voyages[].stream.time_s[]", "s", "times of the stream"),
     JsonKey("voyages[].stream.north_mps[]", "m/s", "stream toward north"),
     JsonKey("voyages[].stream.east_mps[]", "m/s", "stream toward east"),
-    JsonKey("faults[].fault", "", "a fault that was seen", SEEN),
-    JsonKey("faults[].effect", "", "its effect in the catalogue; null: none", SEEN),
-    JsonKey("faults[].words", "", "the same in words", SEEN),
-    JsonKey("faults[].log_bayes_factor", "natural log", "how much likelier the readings are with it", SEEN),
+    JsonKey("faults[].fault", "", "a fault that was seen", WHEN_FAULTY),
+    JsonKey("faults[].effect", "", "its effect in the catalogue; null: none", WHEN_FAULTY),
+    JsonKey("faults[].words", "", "the same in words", WHEN_FAULTY),
+    JsonKey(
+        "faults[].log_bayes_factor", "natural log", "how much likelier the readings are with it", WHEN_FAULTY
+    ),
     JsonKey("faults[].or_instead[]", "", "faults that may be there in its place", "the readings do not tell"),
     JsonKey("faults[].residuals.*.without", "of `unit`", "scatter of a reading without it", "it falls"),
     JsonKey("faults[].residuals.*.with", "of `unit`", "the same with it", "it falls"),

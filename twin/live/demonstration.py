@@ -31,7 +31,7 @@ from twin.physics.ship import load
 SEA = "bench.sea_process"  # the reference sea: a program beside the twin, not a part of it
 UNDER_WAY, START_S = "under way", 60.0  # what the sea says when it is ready, and the longest wait for it
 RUN_IN = 2.0  # ship lengths that it sails straight before a manoeuvre begins
-SEEN = (
+RECORDED_COLUMNS = (
     "north_m",
     "east_m",
     "heading_true_north_deg",
@@ -142,7 +142,7 @@ def compared(log: Path, again: Path) -> str:
         (
             abs(getattr(live[i], name) - getattr(replayed[i], name))
             for i in live.keys() & replayed.keys()
-            for name in SEEN
+            for name in RECORDED_COLUMNS
         ),
         default=math.nan,
     )

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from twin.live.loop import Loop
 from twin.live.observer.controls import with_measured_controls
 from twin.live.observer.dynamics import INPUTS, KnownDynamics
-from twin.live.observer.predict import STEP, LearnedAt, Middle, carry
+from twin.live.observer.predict import STEP_LENGTHS, LearnedAt, Middle, carry
 from twin.live.observer.steering import Steering
 from twin.live.signals.derive import turn
 from twin.physics.maths import total
@@ -46,7 +46,7 @@ class Foresight:
         self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0
     ):
         self.loop, self.horizons_s, self.every_s = loop, horizons_s, every_s
-        self.step_s = min(STEP * loop.ship.L_pp / loop.ship.U_0, 1.0)
+        self.step_s = min(STEP_LENGTHS * loop.ship.L_pp / loop.ship.U_0, 1.0)
         self._starts: list[Start] = []
         self._course: list[tuple[float, dict[str, float]]] = []  # what was measured, each step_s
         self._next_start: float | None = None

@@ -4,7 +4,7 @@ the bound of the observer's error and says whether the assumptions of its proof 
 
 from math import degrees, hypot, pi
 
-from twin.live.certificate.observer_tube import STILL, Three, Tube
+from twin.live.certificate.observer_tube import NO_PULL, Three, Tube
 from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.guard import CONTROLS
@@ -144,7 +144,7 @@ class Stabilizer:
         heading = observer.received["psi"] and self._in_time("psi", measured, tube)
         in_time = self._since_late_s > 0.0
         pulled = tuple([0.0 if g and in_time else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
-        tube.step(got, sea, pulled if any(pulled) else STILL, dt, acts, heading, observer.pulled["psi"])  # type: ignore[arg-type]
+        tube.step(got, sea, pulled if any(pulled) else NO_PULL, dt, acts, heading, observer.pulled["psi"])  # type: ignore[arg-type]
 
     @property
     def broken(self) -> str:

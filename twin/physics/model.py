@@ -8,7 +8,7 @@ from .effect import Effect, Flow, Lag, SensorFault
 from .effect import Force as ForceEffect
 from .maths import cos, sin, total
 from .ship import Ship
-from .state import STILL, Force, Number, Rates, Situation, Water
+from .state import STILL_WATER, Force, Number, Rates, Situation, Water
 
 # of a ship with actuators of its own, propeller and rudder give nothing, and the actuators follow
 CORE = ("hull", "coriolis", "propeller", "rudder")
@@ -77,10 +77,12 @@ class Model:
 
     def water(self, s: Situation) -> Water:
         """The water as all flows together make it."""
-        total = STILL
+        total = STILL_WATER
         for flow in self.flows:
             water = flow.water(s, self.loaded)
-            total = water if total is STILL else Water(*[a + b for a, b in zip(total, water, strict=True)])
+            total = (
+                water if total is STILL_WATER else Water(*[a + b for a, b in zip(total, water, strict=True)])
+            )
         return total
 
     def forces(self, s: Situation, w: Water) -> list[core.Tau]:
@@ -98,7 +100,7 @@ class Model:
                 turning,
                 NONE,
                 NONE,
-                *[a.force(s.told, u, v, r, ship) for a in ship.actuators],  # type: ignore[arg-type]
+                *[a.force(s.orders, u, v, r, ship) for a in ship.actuators],  # type: ignore[arg-type]
                 *[push.force(s, ship) for push in self.pushes],
             ]
         return [

@@ -47,7 +47,7 @@ MOMENT = {  # a moment at sea in which every field is filled and nothing is zero
     "u_dot": 0.01,
     "v_dot": -0.02,
 }
-USUAL = ShipNumbers(  # a full tanker of 320 m
+TRIAL_SHIP = ShipNumbers(  # a full tanker of 320 m
     "a usual ship",
     L_pp=320.0,
     B=58.0,
@@ -112,7 +112,7 @@ def declared(effect: Any, name: str) -> None:
 
 def works(effect: type[Effect]) -> None:
     """Refused when it fails at a usual moment on a usual ship, for floats or for arrays."""
-    ship = USUAL
+    ship = TRIAL_SHIP
     numpy = sys.modules.get("numpy")
     try:
         numbers = answer(effect.plausible(ship), Situation(**MOMENT), ship)

@@ -43,7 +43,7 @@ class Water(NamedTuple):
     k_t: Number = 0.0
 
 
-STILL = Water()
+STILL_WATER = Water()
 
 
 class Rates(NamedTuple):
@@ -76,7 +76,7 @@ class Situation:
     delta: Number = 0.0  # rudder [rad], positive turns to starboard
     n: Number = 0.0  # propeller [1/s], positive ahead
     # what is recorded of a ship's actuators, by `name.attribute` in SI; None: one propeller, one rudder
-    told: Any = None
+    orders: Any = None
     t: Number = 0.0  # time since the voyage began [s]
     wind_speed: Number = None  # over ground [m/s]
     wind_to: Number = None  # the direction it blows to [rad]

@@ -13,7 +13,7 @@ import numpy as np
 HOLE_S = 600.0
 LENGTHS = 4.0  # L/U_0 without a reading, over which a ship may turn by more than its smooth motion can say
 WAITS = 3.0  # and so many usual waits for the next reading, where it is read more slowly than that
-FEWEST = 4  # readings that tell of a motion: one more than a path of no jerk has freedoms
+LEAST_READINGS = 4  # readings that tell of a motion: one more than a path of no jerk has freedoms
 
 
 def steps_on(time_s: np.ndarray, step_s: float, hole_s: float) -> np.ndarray:
@@ -48,7 +48,7 @@ def pieces(there: np.ndarray, most: int) -> list[tuple[int, int]]:
     stretch of too few readings is none."""
     at = np.flatnonzero(there)
     groups = np.split(at, np.flatnonzero(np.diff(at) > most) + 1)
-    found = [(int(g[0]), int(g[-1]) + 1) for g in groups if g.size >= FEWEST]
+    found = [(int(g[0]), int(g[-1]) + 1) for g in groups if g.size >= LEAST_READINGS]
     if not found:
         return [(0, there.size)]
     (first, _), (_, last) = found[0], found[-1]

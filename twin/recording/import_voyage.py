@@ -103,7 +103,7 @@ def read_as(v: Voyage) -> str:
 def quietly(quiet: Sequence[Check]) -> str:
     """One line for the checks that have nothing against the voyage, and the names of those that cannot
     tell."""
-    blind = [c.name for c in quiet if not c.told]
+    blind = [c.name for c in quiet if not c.informative]
     cannot = f"; cannot tell: {', '.join(blind)}" if blind else ""
     return (
         f"ok       {len(quiet) - len(blind)} checks have nothing against it{cannot} (--every-check: what "
@@ -113,7 +113,7 @@ def quietly(quiet: Sequence[Check]) -> str:
 
 def mark(check: Check) -> str:
     """The word in front of a check's sentence."""
-    return "WRONG" if check.unusable else "look" if not check.ok else "ok" if check.told else "?"
+    return "WRONG" if check.unusable else "look" if not check.ok else "ok" if check.informative else "?"
 
 
 def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) -> str:

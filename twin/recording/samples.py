@@ -7,8 +7,8 @@ from twin.live.signals.sentinels import CODES, GENERIC, IN_RANGE_TOO
 from twin.num import as_given
 from twin.recording.resample import continuous
 
-FEWEST = 20  # samples, to know what is usual
-USUAL = 0.97  # share of the steps from sample to sample that count as usual
+LEAST_SAMPLES = 20  # samples, to know what is usual
+USUAL_STEPS_SHARE = 0.97  # share of the steps from sample to sample that count as usual
 FAR_M = 1e5  # positions farther from zero than this count from another origin (UTM)
 
 
@@ -46,9 +46,9 @@ def sentinel(name: str, values: np.ndarray) -> np.ndarray:
 def _on_the_way(values: np.ndarray, codes: np.ndarray) -> np.ndarray:
     """True where a value lies no more than three usual steps from the last or the next that is no code."""
     at = np.flatnonzero(np.isfinite(values) & ~codes)
-    if at.size < FEWEST or not codes.any():
+    if at.size < LEAST_SAMPLES or not codes.any():
         return np.zeros(values.shape, bool)
-    usual = 3.0 * float(np.quantile(np.abs(np.diff(values[at])), USUAL))
+    usual = 3.0 * float(np.quantile(np.abs(np.diff(values[at])), USUAL_STEPS_SHARE))
     after = np.searchsorted(at, np.arange(values.size))
     sides = (values[at[np.maximum(after - 1, 0)]], values[at[np.minimum(after, at.size - 1)]])
     with np.errstate(invalid="ignore"):
@@ -79,7 +79,7 @@ def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
     (97 of 100 are smaller; a wave that is sampled coarsely has large ones), and by more than five steps of
     the sensor's resolution. Of (N,) samples in their own unit, an index (K,)."""
     at = np.flatnonzero(np.isfinite(values))
-    if at.size < FEWEST:
+    if at.size < LEAST_SAMPLES:
         return at[:0]
     x = continuous(values[at], period)
     middle = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(x, 2, mode="edge"), 5), axis=1)

@@ -31,7 +31,7 @@ SIGNS = {
     "Lag": (-1, 1),
     "SensorFault": tuple(-1 if n in ATHWART else 1 for n in READ),
 }
-STILL = dict.fromkeys(MOMENT, 0.0) | {
+MOMENT_AT_REST = dict.fromkeys(MOMENT, 0.0) | {
     "depth": 40.0,
     "T_p": 8.0,
     "draught": 18.0,
@@ -253,7 +253,7 @@ def mirrored(effect: type[Effect], ship: Ship) -> str | None:
 def gradient(effect: type[Effect], ship: Ship) -> str | None:
     """Has it a finite gradient at rest? The same."""
     torch = importlib.import_module("torch")
-    inputs = {k: torch.tensor(x, dtype=torch.float64, requires_grad=True) for k, x in STILL.items()}
+    inputs = {k: torch.tensor(x, dtype=torch.float64, requires_grad=True) for k, x in MOMENT_AT_REST.items()}
     values = {
         p.name: torch.tensor(p.null * p.scale(ship), dtype=torch.float64, requires_grad=True)
         for p in effect.params()

@@ -18,7 +18,7 @@ from twin.recording.read import read_voyage
 from twin.recording.ship_file_writer import save
 from twin.recording.write import write_voyage
 from twin.report.page import content, html
-from twin.studio.causes import MOST, cause_view
+from twin.studio.causes import MAX_CAUSES_TRIED, cause_view
 from twin.studio.forces import force_view
 from twin.studio.last_step import last_step, not_there
 from twin.studio.looked import looked, write_result
@@ -81,7 +81,7 @@ def diagnose(asked: Request, job: Path, tell: Tell) -> None:
     tracks, model = list(done.case.tracks), done.case.model
     drawn = content("diagnose", result, tracks, model, voyages=voyages)
     whole.write(job / "report.html", html(drawn))
-    shown = [*result["candidates"], *result["resembles"], *result["weather"]][:MOST]
+    shown = [*result["candidates"], *result["resembles"], *result["weather"]][:MAX_CAUSES_TRIED]
     causes = []
     for candidate in shown:
         tell(f"predicting with {candidate['effect']}")

@@ -46,7 +46,7 @@ class Studio:
         get, put = self._get, self._put
         routes = [
             *(Route(path, self._file) for path in self.page),
-            get("/api/project", self.told),
+            get("/api/project", self.project_report),
             get("/api/form", self.form),
             get("/api/effects", self.effects),
             get("/api/report", self.report),
@@ -111,7 +111,7 @@ class Studio:
         kind, data = self.page[request.url.path]
         return Response(data, headers={"Content-Type": kind})
 
-    async def told(self, request: Request) -> Any:
+    async def project_report(self, request: Request) -> Any:
         """Files and jobs: what every page begins with."""
         files = await run_in_threadpool(self.project.listing)
         jobs = await run_in_threadpool(self.jobs.all_told)
@@ -253,7 +253,7 @@ class Studio:
         return {"job": await run_in_threadpool(self.jobs.add, asked)}
 
     async def job(self, request: Request) -> Any:
-        return await run_in_threadpool(self.jobs.told, request.path_params["job"])
+        return await run_in_threadpool(self.jobs.report, request.path_params["job"])
 
     async def cancel(self, request: Request) -> Any:
         await run_in_threadpool(self.jobs.cancel, request.path_params["job"])

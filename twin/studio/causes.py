@@ -29,7 +29,7 @@ WAYS = {  # axis -> in words, where the force is positive, and where it is negat
     "yaw": ("turning to starboard", "turning to port"),
 }
 ONE_WAY = 0.5  # mean over root mean square from which a force is said to act one way
-MOST = 6  # causes that are predicted with
+MAX_CAUSES_TRIED = 6  # causes that are predicted with
 
 
 def number(p: Mapping[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from twin.study.track.track import Track
 
 AXES = ("X_N", "Y_N", "N_Nm")
 LAGS = 10  # of the test for independence
-LEAST = 20  # independent means of half a ship length without which no test is made
+LEAST_MEANS = 20  # independent means of half a ship length without which no test is made
 MOST_POINTS = 3000  # drawn
 
 
@@ -81,7 +81,7 @@ def _test(
         "independent_p": None,
         "causes": [],
     }
-    if y.size < max(LEAST, 2 * LAGS):
+    if y.size < max(LEAST_MEANS, 2 * LAGS):
         return out
     r = autocorrelation(y)
     q = (

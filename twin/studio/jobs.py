@@ -128,7 +128,7 @@ class Jobs:
             return "waiting"
         return "running" if alive(worker) else "died"
 
-    def told(self, name: str) -> dict[str, Any]:
+    def report(self, name: str) -> dict[str, Any]:
         """What the page shows of a job."""
         folder, state = self.at(name), self.state(name)
         note, worker, end = (read(folder / f) or {} for f in (JOB, WORKER, END))
@@ -151,7 +151,7 @@ class Jobs:
         }
 
     def all_told(self) -> list[dict[str, Any]]:
-        return [self.told(name) for name in self.names()]
+        return [self.report(name) for name in self.names()]
 
     def cancel(self, name: str) -> None:
         """Ends the worker of a job, and notes it: it has written nothing into the project. A worker that is

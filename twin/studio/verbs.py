@@ -61,7 +61,7 @@ VERBS: dict[str, StudioVerb] = {
 }
 LISTS = ("voyages", "held_outs", "references", "effects", "accept")
 READ = ("file", "map", "ship", "voyages", "held_outs", "references")  # names of files that must be there
-MOST = 200  # names in a list
+MAX_NAMES = 200  # names in a list
 
 
 def checked(asked: Any) -> dict[str, Any]:
@@ -76,7 +76,9 @@ def checked(asked: Any) -> dict[str, Any]:
         if key == "force":
             good = isinstance(value, bool)
         else:
-            good = isinstance(names, list) and len(names) <= MOST and all(isinstance(n, str) for n in names)
+            good = (
+                isinstance(names, list) and len(names) <= MAX_NAMES and all(isinstance(n, str) for n in names)
+            )
         if not good:
             raise UsageError(
                 f"{asked['verb']}: {key} must be {'a list of names' if key in LISTS else 'a name'}."

@@ -7,7 +7,15 @@ from dataclasses import dataclass
 
 from bench.reference.boats.craft import Craft, Drive
 
-USUAL = {"worn": 0.18, "screw": 0.18, "late": 0.3, "zero": 0.05, "turned": 6.0, "lost": 1.0, "silent": 1.0}
+FAULT_SIZES = {
+    "worn": 0.18,
+    "screw": 0.18,
+    "late": 0.3,
+    "zero": 0.05,
+    "turned": 6.0,
+    "lost": 1.0,
+    "silent": 1.0,
+}
 SILENT_FROM_S = 30.0
 
 
@@ -29,10 +37,10 @@ def hidden_in(craft: Craft, effects: tuple[tuple[str, float], ...]) -> dict[str,
     states = {d.name: State() for d in craft.drives}
     for text, size in effects:
         what, _, name = text.partition(".")
-        if what not in USUAL or name not in states:
+        if what not in FAULT_SIZES or name not in states:
             raise ValueError(
-                f"{text!r} is nothing that a {craft.name} can hide: one of {', '.join(USUAL)}, a dot, and "
-                f"one of {', '.join(states)}."
+                f"{text!r} is nothing that a {craft.name} can hide: one of {', '.join(FAULT_SIZES)}, a dot, "
+                f"and one of {', '.join(states)}."
             )
         _put(states[name], next(d for d in craft.drives if d.name == name), what, size)
     return states

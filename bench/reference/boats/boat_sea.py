@@ -42,7 +42,7 @@ class Turning:
     n: float = 0.0
     angle: float = 0.0
     order: tuple[float, float] = (0.0, 0.0)
-    told: deque = field(default_factory=lambda: deque(maxlen=256))
+    orders: deque = field(default_factory=lambda: deque(maxlen=256))
 
 
 class BoatSea:
@@ -80,7 +80,7 @@ class BoatSea:
         t = self.tick * self.dt
         for one in self.turning:
             one.order = self.helmsman.orders(t, self.state[2])[one.drive.name]
-            one.told.append((t, one.order))
+            one.orders.append((t, one.order))
         self.gust += self.dt / 4.0 * -self.gust + 0.15 * math.sqrt(self.dt / 2.0) * self.random.gauss(
             0.0, 1.0
         )
@@ -91,7 +91,7 @@ class BoatSea:
         """Motor and servo, by what was ordered when its hidden delay says."""
         d, state = one.drive, self.hidden[one.drive.name]
         due = self.tick * self.dt - state.late
-        share, angle = next((o for t, o in reversed(one.told) if t <= due + 1e-9), one.told[0][1])
+        share, angle = next((o for t, o in reversed(one.orders) if t <= due + 1e-9), one.orders[0][1])
         share = share - state.zero
         wanted = 0.0 if abs(share) < DEAD else d.n_max * math.copysign(abs(share) ** 0.75, share)
         one.n += h / (d.lag + h) * (wanted - one.n)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.stability.attack.bounds import bounds
-from bench.stability.attack.cases import FULL, GROUPS, AttackCase, Group, certified_for
+from bench.stability.attack.cases import FULL_RUN, GROUPS, AttackCase, Group, certified_for
 from bench.stability.attack.orders import Orders, random_orders
 from bench.stability.attack.run_batch import RunBatch, sail
 from bench.stability.attack.steepest import worse
@@ -17,7 +17,7 @@ from twin.live.certificate.certificate import Certificate
 RANDOM, GREEDY, STEEPEST, MOVED = "random", "greedy", "steepest", "moved"
 PASSES = (RANDOM, GREEDY, STEEPEST, MOVED, STEEPEST)
 LASTS = 2.2  # of the time in which the observer forgets
-STEP = 0.1  # of the range, by which a place is moved
+MOVE_SHARE = 0.1  # of the range, by which a place is moved
 MOST_RUNS = 1200  # at once
 ROUNDING = 1e-9
 AXES = 3
@@ -44,7 +44,7 @@ class Attacked:
     @property
     def full(self) -> bool:
         """Whether the ultimate bound, which counts on full ticks and samples, is one for these runs."""
-        return self.group.pattern == FULL
+        return self.group.pattern == FULL_RUN
 
     def joined(self, other: "Attacked") -> "Attacked":
         """Both together."""
@@ -147,7 +147,7 @@ def _moved(w: Waters, was: RunBatch, tube: np.ndarray, rng: np.random.Generator)
             half = best.size // 2
             chosen[best[best.size - half :]] = best[:half]
             children[best[best.size - half :]] = True
-    return was.orders.of(chosen).moved(rng, STEP, children)
+    return was.orders.of(chosen).moved(rng, MOVE_SHARE, children)
 
 
 def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
@@ -160,7 +160,7 @@ def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name
     broken = np.any(over[:, rows] > 1.0 + ROUNDING, axis=1)
     bound = np.array(w.c.bound)[:, None]
     of_bound = np.where(inside[:, None], error[:, :AXES] / bound, 0.0).max(axis=(0, 2))
-    if group.pattern != FULL:
+    if group.pattern != FULL_RUN:
         of_bound = np.zeros(AXES)
     first = ""
     if broken.any():
@@ -175,6 +175,6 @@ def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name
         int(broken.sum()),
         over[:, :AXES].max(axis=(0, 2)),
         of_bound,
-        {way: of_bound if group.pattern == FULL else late},
+        {way: of_bound if group.pattern == FULL_RUN else late},
         first,
     )

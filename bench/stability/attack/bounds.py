@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench.stability.attack.cases import FULL
+from bench.stability.attack.cases import FULL_RUN
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.rolled_tube import RolledTube, tube_of
 from twin.live.observer.rollback import Path, Pull, Stretch
@@ -17,7 +17,10 @@ def bounds(w: Waters) -> np.ndarray:
     told = []
     for i, group in enumerate(w.groups):
         # of full ticks all tubes are alike but for the ages that an observer corrects at
-        key = group.pattern, (group.delay if w.c.inner > 1 else 0.0) if group.pattern == FULL else float(i)
+        key = (
+            group.pattern,
+            (group.delay if w.c.inner > 1 else 0.0) if group.pattern == FULL_RUN else float(i),
+        )
         if key not in seen:
             seen[key] = _of(w, i)
         told.append(seen[key])

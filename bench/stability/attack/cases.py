@@ -15,7 +15,7 @@ SHIPS = ("kvlcc2", "container", "kvlcc2_model", "usv")
 RATES_HZ = (10.0, 20.0, 50.0)
 FACTORS = (1.1, 1.25, 1.5, 2.0)  # outside: times the limit
 DELAYS = (0.0, 0.5, 1.0)  # of the greatest age that the certificate allows
-FULL, SHORT, GAPS = "full", "short", "gaps"
+FULL_RUN, SHORT, GAPS = "full", "short", "gaps"
 
 
 class Excess(NamedTuple):
@@ -33,7 +33,7 @@ class Group(NamedTuple):
     gaps: samples get lost), and what is exceeded."""
 
     delay: float
-    pattern: str = FULL
+    pattern: str = FULL_RUN
     excess: Excess = Excess()
 
     @property
@@ -50,7 +50,7 @@ class AttackCase(NamedTuple):
     late: int | None = None
 
 
-INSIDE = tuple(Group(delay, pattern) for delay in DELAYS for pattern in (FULL, SHORT, GAPS))
+INSIDE = tuple(Group(delay, pattern) for delay in DELAYS for pattern in (FULL_RUN, SHORT, GAPS))
 EXCESSES = {name: (name,) for name in Excess._fields} | {"all": Excess._fields}  # what is exceeded together
 OUTSIDE = tuple(
     Group(1.0, excess=Excess()._replace(**dict.fromkeys(names, factor)))

@@ -15,7 +15,7 @@ from twin.physics.state import Force, Situation
 
 ROUGH = 0.2  # a step times the steepest slope: the truth takes longer ones in parts
 SHORTEST = 0.9  # of a period, where ticks are short
-LOST = 0.15  # of the samples, where there are gaps
+SAMPLES_LOST = 0.15  # of the samples, where there are gaps
 
 State = tuple[np.ndarray, ...]
 
@@ -44,7 +44,7 @@ class Waters:
             if group.pattern == SHORT:
                 self.lasts[:, i] = rng.uniform(SHORTEST, 1.0, ticks)
             if group.pattern == GAPS:
-                self.comes[:, :3, i] = rng.random((ticks, 3)) > LOST
+                self.comes[:, :3, i] = rng.random((ticks, 3)) > SAMPLES_LOST
             self.lasts[:, i] *= group.excess.tick
         steepest = max(c.plant.magnitude()[i][i] for i in (0, 1, 2))
         # steps in which half a tick of the truth is made; 0: one for the whole of it

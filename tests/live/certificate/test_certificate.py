@@ -114,7 +114,11 @@ def test_the_bound_is_a_fixed_point_of_the_recursion(vlcc):
     _, c = vlcc
     d = c3.add(c3.apply(c.push, c.disturbance.calm), c.calm)
     E = c3.add(c3.apply(c.step.V, c.bound), d)
-    told, now, drift = c.step.told(d, c.noise), c3.apply(c.step.now, c.bound), c3.apply(c.step.drift, c.bound)
+    told, now, drift = (
+        c.step.left_by(d, c.noise),
+        c3.apply(c.step.now, c.bound),
+        c3.apply(c.step.drift, c.bound),
+    )
     for i in range(3):
         assert now[i] + c.step.again[i] * E[i] + drift[i] + told[i] == pytest.approx(c.bound[i], rel=1e-9)
 

@@ -71,7 +71,7 @@ def test_every_matrix_of_one_sample_is_that_of_the_page(plant, m):
     for ours, hand in (
         (step.V, V), (step.now, W), (step.again, again), (step.drift, drift), (step.pushed, on_d),
         (step.heard, on_n), (step.G, W + again[:, None] * V + drift), (step.share(), np.diag(on_d + again)),
-        (step.told(tuple(d), NOISE), on_d * d + on_n * NOISE),
+        (step.left_by(tuple(d), NOISE), on_d * d + on_n * NOISE),
     ):  # fmt: skip
         assert np.array(ours) == pytest.approx(hand, rel=1e-12, abs=1e-18)
     push, calm = pushed(plant, PSI)

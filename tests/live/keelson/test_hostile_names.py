@@ -11,7 +11,7 @@ from twin.live.clock import Instant
 from twin.live.inbox import Inbox
 from twin.live.keelson import messages
 from twin.live.keelson.bus import MemoryBus
-from twin.live.keelson.seats import MOST, SILENT_S, Seats
+from twin.live.keelson.seats import MAX_SOURCES, SILENT_S, Seats
 from twin.live.keelson.topics import key
 from twin.live.log.record import MAX_CHANNELS, Recorder, read
 
@@ -27,7 +27,7 @@ def sample(value=12.0):
 
 
 def test_of_65535_invented_names_a_few_are_heard_and_logged_and_the_true_one_is():
-    """Test: a compass, then 65 535 names in 25 s. Expected: never more than MOST keys in the log, the compass
+    """Test: a compass, then 65 535 names in 25 s. Expected: never more than MAX_SOURCES keys in the log, the compass
     in every tick."""
     bus, logged = MemoryBus(), set()
     inbox = Inbox(bus, lambda topic, *_: logged.add(topic))
@@ -38,8 +38,8 @@ def test_of_65535_invented_names_a_few_are_heard_and_logged_and_the_true_one_is(
             bus.put(named(f"invented-{number}"), sample(99.0))
         now_s = 100.0 + 0.1 * tick
         true_ones += any(r.source == "gyro" for r in inbox.read(Instant(tick, now_s, 1.7e9 + now_s)))
-    assert true_ones == 250 and named("gyro") in logged and len(logged) == MOST
-    assert inbox.seats.refused == 65_535 - (MOST - 1)
+    assert true_ones == 250 and named("gyro") in logged and len(logged) == MAX_SOURCES
+    assert inbox.seats.refused == 65_535 - (MAX_SOURCES - 1)
     alarm = inbox.seats.alarm(now_s)
     assert "heading_true_north_deg" in alarm and "invented-" in alarm and "[sources]" in alarm
     assert inbox.seats.alarm(now_s + 60.0) == ""
@@ -47,7 +47,7 @@ def test_of_65535_invented_names_a_few_are_heard_and_logged_and_the_true_one_is(
 
 def test_a_name_that_falls_silent_gives_its_seat_up_and_the_named_source_always_has_one():
     seats = Seats({"heading_true_north_deg": "gyro"})
-    assert all(seats.taken(named(f"x{i}"), 0.0) for i in range(MOST))
+    assert all(seats.taken(named(f"x{i}"), 0.0) for i in range(MAX_SOURCES))
     assert not seats.taken(named("late"), 1.0)
     assert seats.taken(named("gyro"), 1.0) and seats.taken(named("rudder", "rudder_angle_deg"), 1.0)
     assert seats.taken(named("late"), SILENT_S + 2.0)

@@ -10,7 +10,7 @@ from twin.live.certificate.rolled import radius
 from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.observer.dynamics import KnownDynamics
 from twin.live.observer.observer import Observer
-from twin.live.observer.rollback import FULL, Path, Pull, RollBack, Stretch, inner_steps
+from twin.live.observer.rollback import FULL_GAIN, Path, Pull, RollBack, Stretch, inner_steps
 from twin.live.signals.measured import Measured
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -99,10 +99,10 @@ def test_a_sample_is_answered_once_and_by_its_share(boat):
         fed(observer, boat, 0.0, {"psi": (0.0, 0.3), "u": (0.0, 1.2), "v": (0.0, 0.0), "r": (0.0, 0.0)})
         said = {} if more is None else {"u": (0.1, quiet.estimate.u + more)}
         fed(observer, boat, 0.1, said)
-    assert pulled.estimate.u - quiet.estimate.u == pytest.approx(FULL * 0.02, rel=1e-9)
+    assert pulled.estimate.u - quiet.estimate.u == pytest.approx(FULL_GAIN * 0.02, rel=1e-9)
     fed(quiet, boat, 0.2, {})
     fed(pulled, boat, 0.2, {})
-    assert 0.0 < pulled.estimate.u - quiet.estimate.u < FULL * 0.02
+    assert 0.0 < pulled.estimate.u - quiet.estimate.u < FULL_GAIN * 0.02
 
 
 def test_the_boat_at_ten_ticks_a_second_has_a_certificate_as_narrow_as_at_fifty(of_boat):

@@ -1,16 +1,15 @@
 """The probabilities that are told: what moves them, and that the fit to the recorded answers gives them."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from bench.fleet import probability_fit
+from bench.fleet import kept_rows, probability_fit
+from bench.fleet.decision_fit import with_facts
+from bench.fleet.keep_answers import FACTS, TABLE
 from tests.study.diagnosis.test_decision import cause, facts
 from twin.study.diagnosis import calibrated_probability as told
 from twin.study.diagnosis.decision import decide
-
-EXAMPLES = Path(__file__).parents[3] / "docs/results/probability-examples.csv"
 
 
 def said(f, posterior=0.97):
@@ -19,7 +18,8 @@ def said(f, posterior=0.97):
 
 @pytest.fixture(scope="module")
 def fitted():
-    return probability_fit.fitted(probability_fit.read(EXAMPLES))
+    rows = with_facts(kept_rows.together(kept_rows.read(TABLE, FACTS)))
+    return probability_fit.fitted(probability_fit.examples(rows))
 
 
 def test_a_clearer_cause_that_leaves_little_is_likelier_there():
@@ -30,11 +30,11 @@ def test_a_clearer_cause_that_leaves_little_is_likelier_there():
 
 
 def test_it_by_hand():
-    """p 0.97, significance 20, leaves what is expected, named, nothing nameless: -4.83 + 0.26 (3.476 / 3) +
-    0.86 (3.045) + 1.35 + 1.84 = 1.280."""
+    """p 0.97, significance 20, leaves what is expected, named, nothing nameless: -5.48 + 0.30 (3.476 / 3) +
+    1.04 (3.045) + 1.48 + 2.28 = 1.794."""
     f = facts(cause(probability=0.97, significance=20.0))
     assert decide(f).missing == (f.causes[0].effect,)
-    assert said(replace(f, left=replace(f.left, error=1.0))) == pytest.approx(0.782, abs=1e-3)
+    assert said(replace(f, left=replace(f.left, error=1.0))) == pytest.approx(0.857, abs=1e-3)
 
 
 def test_a_cause_that_the_explanation_does_without_is_told_by_its_posterior_alone():

@@ -77,7 +77,7 @@ def test_the_facts_of_a_recorded_voyage_give_the_verdict_that_was_recorded(name)
 
 def test_facts_are_the_same_after_they_were_written():
     f = facts(cause(), weather=(cause("Wind", belongs_to="voyage"),))
-    assert Facts.read(json.loads(json.dumps(f.told()))) == f
+    assert Facts.read(json.loads(json.dumps(f.as_json()))) == f
 
 
 def test_the_last_rule_always_holds_and_each_reason_has_one_sentence():

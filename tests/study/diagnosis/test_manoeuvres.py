@@ -49,7 +49,7 @@ def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_wit
 
 
 def told_at(model, name, lengths):
-    return inputs(model, MANOEUVRES[name], HelmOrder(lengths), 0.0, 0.5)["told"]
+    return inputs(model, MANOEUVRES[name], HelmOrder(lengths), 0.0, 0.5)["orders"]
 
 
 def test_each_actuator_of_a_ship_with_two_screws_works_alone_in_turn():

@@ -112,7 +112,7 @@ def test_what_is_most_probable_of_everything_is_where_the_sum_of_squares_stands_
 def test_a_moment_is_told_as_a_force(tanker, voyages):
     case = assemble([voyages["nothing"]], tanker)
     moment = replace(stretches(case, as_she_is(case))[0], push=np.array([1.0, 0.0, 0.0]))
-    said = moment.told(case.model)
+    said = moment.as_json(case.model)
     assert said["X_N"] == pytest.approx(tanker.scale("force")) and said["Y_N"] == said["N_Nm"] == 0.0
 
 

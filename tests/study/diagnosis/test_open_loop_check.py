@@ -25,17 +25,18 @@ from twin.study.estimation.rough import KNOWN, added, elsewhere
 from twin.study.reference.evidence import Hypothesis, posterior
 
 TEN = 10.0  # windows that do not overlap
-FLOOR_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
+EXPECTED_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
 
 
 def asked(levered=None, **open_loop_error_m):
-    """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough
+    """What a few hypotheses were off by [m] where 8 m are expected in the usual world and of 16 m in a rough
     one."""
     sets = {
         tuple(n for n in name.split("_") if n != "nothing"): off for name, off in open_loop_error_m.items()
     }
     found = {
-        s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()
+        s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, EXPECTED_M)
+        for s, off in sets.items()
     }
     return OpenLoopCheck(
         found,
@@ -53,7 +54,7 @@ def says(*effects, scenario="usual"):
 
 def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_too(tanker, voyages):
     """Test: a model that holds the wind since it was calibrated, on a windy voyage; the same calibrated with
-    it. Expected: a tenth of where it would end without it belongs to the floor, with what a wind that pushes
+    it. Expected: a tenth of where it would end without it belongs to what is expected, with what a wind that pushes
     a twentieth of its length farther ahead or aft would do; and nothing."""
     windy = tanker.with_effects(find("Wind").plausible(tanker))
     lasting_ones = replace(
@@ -76,7 +77,7 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
 
 
 def test_a_wind_may_lead_her_as_far_off_as_its_side_force_would_that_attacks_elsewhere():
-    """Test: 10 m off at a floor of hypot(8, 2) m, alone and with what was not run beside it. Expected: no
+    """Test: 10 m off where hypot(8, 2) m are expected, alone and with what was not run beside it. Expected: no
     word against either where the lever may leave 6 m."""
     sure, levered = asked(nothing=20.0, Wind=10.0), asked({("Wind",): 6.0}, nothing=20.0, Wind=10.0)
     assert all(
@@ -90,29 +91,29 @@ def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_
     assert path.log_probability(says("Wind")) == path.log_probability(says("Bank")) == 0.0
 
 
-def test_the_path_has_the_floor_of_the_model_alone_and_the_steps_the_one_beside_all_that_is_usual(
+def test_the_path_has_the_expected_error_of_the_model_alone_and_the_steps_the_one_beside_all_that_is_usual(
     tanker, voyages
 ):
     case = assemble([voyages["nothing"]], tanker)
     notes = tanker.notes["structural"]
-    assert case.path.share == pytest.approx(notes["floor"]["share"]) and case.floor.share == pytest.approx(
-        notes["beside"]["share"]
-    )
+    assert case.path.share == pytest.approx(
+        notes["floor"]["share"]
+    ) and case.noise_model.share == pytest.approx(notes["beside"]["share"])
     weighed, found, _ = search(case)
-    floor = open_loop_check(case, found, weighed).floor
-    assert floor["usual"] <= floor["rough"] <= floor["strange"] < 4.0 * floor["usual"]
+    expected_m = open_loop_check(case, found, weighed).expected_m
+    assert expected_m["usual"] <= expected_m["rough"] <= expected_m["strange"] < 4.0 * expected_m["usual"]
 
 
 def test_what_goes_astray_loses_by_how_far_and_how_often():
     path = asked(nothing=20.0, Wind=16.0)
-    assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(16.0 / FLOOR_M))
+    assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(16.0 / EXPECTED_M))
     assert path.log_probability(says("Wind", scenario="rough")) == 0.0
     assert path.log_probability(says()) < path.log_probability(says("Wind"))
 
 
 def test_the_form_of_an_effect_may_miss_a_part_of_what_it_does_to_the_path():
-    for nothing, floor in ((20.0, FLOOR_M), (100.0, np.hypot(8.0, 10.0))):
-        path = asked(nothing=nothing, Wind=floor)
+    for nothing, expected_m in ((20.0, EXPECTED_M), (100.0, np.hypot(8.0, 10.0))):
+        path = asked(nothing=nothing, Wind=expected_m)
         assert path.log_probability(says("Wind")) == pytest.approx(0.0)
         assert path.log_probability(says()) == pytest.approx(-2.0 * TEN * np.log(nothing / 8.0))
 
@@ -129,12 +130,12 @@ def test_a_force_that_comes_and_goes_leaves_half_of_what_it_does_to_the_path():
 def test_a_hypothesis_that_was_not_asked_leads_as_well_as_the_best_part_of_it():
     path = asked(nothing=20.0, Wind=12.0, Bank=40.0)
     assert path.log_probability(says("Wind", "Bank")) == path.log_probability(says("Wind"))
-    assert path.log_probability(says("Loading")) == pytest.approx(-2.0 * TEN * np.log(20.0 / FLOOR_M))
+    assert path.log_probability(says("Loading")) == pytest.approx(-2.0 * TEN * np.log(20.0 / EXPECTED_M))
 
 
 def test_a_pair_that_was_asked_is_not_excused_by_its_better_half():
     path = asked(nothing=20.0, Wind=7.0, Wind_Bank=20.0)
-    assert path.log_probability(says("Wind", "Bank")) == pytest.approx(-2.0 * TEN * np.log(20.0 / FLOOR_M))
+    assert path.log_probability(says("Wind", "Bank")) == pytest.approx(-2.0 * TEN * np.log(20.0 / EXPECTED_M))
 
 
 def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_none_does():
@@ -206,7 +207,7 @@ def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_fou
     ) not in open_loop_check(case, stale, [worn, found[()].hypothesis]).found
 
 
-def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyages(tanker, voyages):
+def test_the_expected_error_is_no_lower_than_what_the_calibration_measured_on_other_voyages(tanker, voyages):
     case = assemble([voyages["nothing"]], tanker)
     ahead = horizon_s(case.tracks[0], case.model)
     for held_out, measured in (([], 0.0), ([{"horizon_s": ahead, "position_m": 500.0}], 500.0)):
@@ -215,14 +216,14 @@ def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyag
         asked_of = replace(case, model=replace(case.model, ship=ship))
         assert measured_error_m(asked_of) == pytest.approx(measured)
     weighed, found, _ = search(case)
-    floor = open_loop_check(asked_of, found, weighed).floor
-    assert list(floor.values()) == pytest.approx([500.0] * len(floor))
+    expected_m = open_loop_check(asked_of, found, weighed).expected_m
+    assert list(expected_m.values()) == pytest.approx([500.0] * len(expected_m))
 
 
 def test_two_that_lead_her_farther_astray_than_one_of_them_are_no_hypothesis():
-    """Test: a gear alone, and with a second effect, at a floor of 8.2 m. Expected: the two are dropped where
+    """Test: a gear alone, and with a second effect, where 8.2 m are expected. Expected: the two are dropped where
     they end outside it and farther off than the gear; not where both end alike, nor where the two end within
-    the floor."""
+    what is expected."""
     both = says("SteeringLag", "Loading")
     for alone, together, kept in (
         (5.0, 9.0, False),

@@ -8,8 +8,8 @@ import pytest
 
 from twin.physics.effects import catalogue
 from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.consider import change, significance
 from twin.study.diagnosis.refine import refine
-from twin.study.diagnosis.significance import change, significance
 from twin.study.estimation.columns import Unknown
 
 

@@ -8,8 +8,7 @@ from twin.study.diagnosis.consider import consider
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.refine import refine
 from twin.study.diagnosis.search import search
-from twin.study.diagnosis.verdict import weights
-from twin.study.diagnosis.without import without
+from twin.study.diagnosis.verdict import weights, without
 
 
 @pytest.fixture(scope="module")

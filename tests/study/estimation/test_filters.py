@@ -27,7 +27,7 @@ def unstable(growth: float, read_every: int, steps: int = STEPS) -> Filters:
 
 def by_joseph(filters: Filters) -> np.ndarray:
     """The last covariance by the textbook's recursion, which keeps a covariance one however it is rounded."""
-    told, C = filters.told, filters.C[0, 0].copy()
+    told, C = filters.stretches, filters.C[0, 0].copy()
     for k in range(STEPS):
         H, R = told.H[k, 0], np.diag(filters.unread[k, 0, 0])
         K = np.linalg.solve(H @ C @ H.T + R, H @ C).T
@@ -61,7 +61,7 @@ def test_a_model_that_runs_away_between_two_readings_is_refused_in_one_line():
 def test_of_faults_of_several_instruments_each_column_is_as_if_it_were_alone():
     draw, P = np.random.default_rng(SEED), 4
     turns = {j: draw.standard_normal((1, 2, 8, 8)).astype(np.float32) for j in (0, 3, 2)}
-    shown, told = draw.standard_normal((1, 2, 8, 1 + P)).astype(np.float32), unstable(1.0, 1, 1).told
+    shown, told = draw.standard_normal((1, 2, 8, 1 + P)).astype(np.float32), unstable(1.0, 1, 1).stretches
 
     def white(some):
         two = {

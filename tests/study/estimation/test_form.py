@@ -118,7 +118,7 @@ def test_the_rudder_of_a_ship_of_actuators_has_the_same_terms(sailed):
     numbers = {"D": ship.D_P, "K_T0": d.K_T0, "K_T1": d.K_T1, "A_R": ship.A_R, "x": d.x_R * ship.L_pp}
     main = Actuator("main", "propeller", ("rate_rev_s", "angle_rad"), **numbers)
     parts = Model(replace(ship, actuators=(main,)), own.effects)
-    told = replace(t, told={"main.rate": t.n, "main.angle": t.delta})
+    told = replace(t, orders={"main.rate": t.n, "main.angle": t.delta})
     for name in form.RUDDER:
         assert form.accelerations(told, parts, name) == pytest.approx(form.accelerations(t, own, name))
         assert np.abs(form.accelerations(told, parts, name)).max() > 0.0

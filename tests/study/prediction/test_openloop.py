@@ -63,7 +63,7 @@ def test_a_structural_floor_is_no_lower_than_the_calibrated_ship_was_off_on_voya
         for h, p, a in ((10.0, 1e-6, 1e-6), (120.0, 300.0, 9.0))
     ]
     once = replace(kvlcc2, notes={**kvlcc2.notes, "structural": {"held_out": off}})
-    before, after = (predict(track(make(), s), Model.of(s), floor=NoiseModel()) for s in (kvlcc2, once))
+    before, after = (predict(track(make(), s), Model.of(s), noise_model=NoiseModel()) for s in (kvlcc2, once))
     assert mean(after, "position", 120.0, STRUCTURE) == pytest.approx(300.0) and mean(
         after, "heading", 120.0, STRUCTURE
     ) == pytest.approx(np.radians(9.0))
@@ -74,7 +74,7 @@ def test_a_structural_floor_is_no_lower_than_the_calibrated_ship_was_off_on_voya
 
 
 def test_a_structural_floor_stands_above_that_of_the_sensors(make, kvlcc2):
-    w = predict(track(make(), kvlcc2), Model.of(kvlcc2), floor=NoiseModel())
+    w = predict(track(make(), kvlcc2), Model.of(kvlcc2), noise_model=NoiseModel())
     for name in ("position", "lateral", "heading"):
         assert mean(w, name, 120.0, STRUCTURE) > 2.0 * mean(w, name, 120.0, SENSORS)
 

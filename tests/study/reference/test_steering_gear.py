@@ -17,7 +17,7 @@ from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
 from twin.study.diagnosis.assemble import judgeable
 from twin.study.estimation.columns import effect_unknowns
-from twin.study.reference.nuisance import USUAL, from_ship, nuisance_unknowns, of_known_weather
+from twin.study.reference.nuisance import HEALTHY_WIDTHS, from_ship, nuisance_unknowns, of_known_weather
 from twin.study.track.track import track
 
 GYRO = 1e-6  # rad/s that the ship file already says of the gyro
@@ -119,5 +119,5 @@ def test_a_change_is_asked_of_what_she_has_and_of_the_weather_that_she_knows(tan
     assert (
         usual
         and {label.split(".")[0] for label in usual} == {"Wind"}
-        and usual["Wind.c_y"] == pytest.approx(USUAL * 0.8)
+        and usual["Wind.c_y"] == pytest.approx(HEALTHY_WIDTHS * 0.8)
     )

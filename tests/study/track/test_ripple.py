@@ -52,4 +52,4 @@ def test_ripples_that_one_instrument_shows_are_no_rough_world_and_the_cause_is_f
     still, rippling = (assemble([v], tanker) for v in (voyages["RudderWear"], ripples))
     assert all(x.track.ripple is None for x in still.lines)
     assert all(x.track.ripple is not None for x in rippling.lines)
-    assert rippling.floor == still.floor
+    assert rippling.noise_model == still.noise_model

@@ -34,7 +34,7 @@ from twin.live.certificate.theorem import Promise, assess
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
-from twin.live.observer.rollback import FULL
+from twin.live.observer.rollback import FULL_GAIN
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
@@ -209,13 +209,10 @@ def certify(
     numbers = movable(model.effects, model.ship) if adapted else ()
     plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), c3.row(noise)
     if inner > 1:
-        K = c3.row(_three(FULL / h))
-    else:
-        K = (
-            suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m)))
-            if K is None
-            else c3.row(_three(K))
-        )
+        K = FULL_GAIN / h
+    elif K is None:
+        K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m)))
+    K = c3.row(_three(K))
     promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(
@@ -274,16 +271,14 @@ def _three(K: float | Sequence[float]) -> list[float]:
 def _bound_of(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:
     if disturbance is None or isinstance(disturbance, Disturbance):
         return disturbance
-    X, Y, N = disturbance
-    return Disturbance((X, Y, N))
+    return Disturbance(c3.row(disturbance))
 
 
 def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float]) -> None:
     """Refuse what is no gain, period, delay or noise."""
-    numbers = (*K, h, *m, *noise)
     if (
         not len(K) == len(noise) == len(m) == 3
-        or not all(0.0 <= x < float("inf") for x in numbers)
+        or not all(0.0 <= x < float("inf") for x in (*K, h, *m, *noise))
         or not h > 0.0
         or not all(k > 0.0 for k in K)
     ):

@@ -10,7 +10,7 @@ from twin.live.certificate.recursion import NEVER, Ages, pushed, recursion
 from twin.live.observer.operating import NU
 from twin.physics.maths import total
 
-SURE = 3.0  # times the least K: what the loop's own is at least
+GAIN_MARGIN = 3.0  # times the least K: what the loop's own is at least
 
 
 def gains_that_do(plant: Plant, m: Ages, extra: Matrix | None = None) -> tuple[float, float] | None:
@@ -42,7 +42,7 @@ def suited_gain(plant: Plant, m: Ages, usual: float, fastest: float) -> Row:
     limits = gains_that_do(plant, m)
     k = usual
     if limits is not None and limits[0] < fastest:
-        k = min(max(usual, SURE * limits[0]), sqrt(limits[0] * limits[1]), fastest)
+        k = min(max(usual, GAIN_MARGIN * limits[0]), sqrt(limits[0] * limits[1]), fastest)
     return k, k, k
 
 

@@ -14,7 +14,7 @@ from collections import deque
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
-from twin.live.certificate.periods import SURE, TABLE, Periods, of_certificate
+from twin.live.certificate.periods import ROUNDING_SHARE, TABLE, Periods, of_certificate
 from twin.live.observer.operating import NU, WORDS, in_unit
 from twin.physics.state import Situation
 
@@ -22,7 +22,7 @@ NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measureme
 
 Three = tuple[float, float, float]
 Rows = tuple[tuple[float, ...], ...]
-STILL = (0.0, 0.0, 0.0)
+NO_PULL = (0.0, 0.0, 0.0)
 NONE = (False, False, False)
 
 
@@ -68,7 +68,7 @@ class Tube:
         self.certificate = certificate
         self.window = look_back(max(certificate.delays))
         self.periods: Periods = of_certificate(certificate)
-        self.oldest_s = (1.0 + SURE) * max(certificate.delays) * certificate.h
+        self.oldest_s = (1.0 + ROUNDING_SHARE) * max(certificate.delays) * certificate.h
         first = self.beta = certificate.noise if start is None else start
         self.psi = certificate.heading_noise
         self._after, self._before = ([Highest(self.window, b) for b in first] for _ in range(2))
@@ -96,7 +96,7 @@ class Tube:
         self,
         received: tuple[bool, bool, bool],
         H_s: float = 0.0,
-        pulled: Three = STILL,
+        pulled: Three = NO_PULL,
         dt: float | None = None,
         acts: bool = True,
         heading: bool = True,
@@ -139,7 +139,7 @@ class Tube:
                 beta.append(E)
         if self.certificate.estimated_heading:
             self._turn(E, late * h, short, heading, turned)
-        if pulled is not STILL or self._pulls:
+        if pulled is not NO_PULL or self._pulls:
             beta = self._and_pulled(beta, received, pulled)
         u, v, r = self.beta = beta[0], beta[1], beta[2]
         first, second, third = self._after
@@ -188,7 +188,7 @@ class Tube:
         self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
         if not c.estimated_heading:
             self.psi = self.heading_noise
-        told = step.told(d, self.noise)
+        told = step.left_by(d, self.noise)
         self._table: Rows = tuple(
             (*one.V[i], d[i], one.turned[i], *step.now[i], step.again[i], *step.drift[i], told[i])
             for i in (0, 1, 2)

@@ -17,7 +17,7 @@ from twin.live.certificate.recursion import CURVE, pushed, recursion
 TABLE = (1, 2, 3, 5, 10, 30)  # periods; a longer tick begins the bound anew
 TOO_LONG = 0
 LATE_CURVE = 0.5
-SURE = 1e-6  # share of a period that rounding of the clock may add
+ROUNDING_SHARE = 1e-6  # share of a period that rounding of the clock may add
 
 
 class Step(NamedTuple):
@@ -42,7 +42,7 @@ class Periods:
 
     def count(self, dt: float) -> int:
         """The entry of the table that covers dt; TOO_LONG where none does."""
-        periods = max(ceil(dt / self.h - SURE), 1)
+        periods = max(ceil(dt / self.h - ROUNDING_SHARE), 1)
         return next((j for j in TABLE if j >= periods), TOO_LONG)
 
     def of(self, count: int) -> Step:

@@ -58,7 +58,7 @@ class Recursion:
         """How much of the noise reaches p."""
         return c3.row(pull * (1.0 + b * pull) for b, pull in zip(self.before, self.pull, strict=True))
 
-    def told(self, d: Row, noise: Row) -> Row:
+    def left_by(self, d: Row, noise: Row) -> Row:
         """What a measurement leaves in p, for one push d in each sample and this noise."""
         return c3.row(a * x + b * n for a, x, b, n in zip(self.pushed, d, self.heard, noise, strict=True))
 

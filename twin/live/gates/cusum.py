@@ -13,9 +13,9 @@ from math import copysign, inf
 
 K, H = 0.75, 10.0
 ENOUGH = 12  # blocks from which the scale is known
-SURE = 25.0  # scales that no noise reaches: one block is enough
+NO_NOISE_SCALES = 25.0  # scales that no noise reaches: one block is enough
 FORGETS = 80.0  # blocks that mean and scale remember
-USUAL = 1.25  # scale of a normal number over the mean of its size
+NORMAL_SCALE = 1.25  # scale of a normal number over the mean of its size
 SLOWLY = 0.1  # of the usual pace at which what is suspicious teaches
 
 
@@ -29,19 +29,19 @@ class Cusum:
         self.mean = 0.0
         self.alarm = False
         self._count = 0
-        self._size = least / USUAL  # mean size of a deviation
+        self._size = least / NORMAL_SCALE  # mean size of a deviation
         self._up = self._down = 0.0
 
     @property
     def scale(self) -> float:
         """The usual deviation of a block, never below `least`."""
-        return max(USUAL * self._size, self.least)
+        return max(NORMAL_SCALE * self._size, self.least)
 
     def feed(self, x: float, allowed: float = 0.0) -> bool:
         """One block, of which so much either way counts for nothing; whether there is an alarm."""
         off = x - self.mean
         z = copysign(max(abs(off) - allowed, 0.0), off) / self.scale
-        sure = abs(z) > SURE
+        sure = abs(z) > NO_NOISE_SCALES
         if self._count >= ENOUGH or sure:
             step = min(max(z, -0.5 * H), 0.5 * H)
             self._up = min(max(self._up + step - K, 0.0), 1.5 * H)

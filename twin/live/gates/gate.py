@@ -22,9 +22,12 @@ class Gate:
     and its quality."""
 
     def __init__(
-        self, channel: Channel, floor: float, frozen: Frozen | None = None, source: str | None = None
+        self, channel: Channel, allowance: float, frozen: Frozen | None = None, source: str | None = None
     ):
-        self.channel, self.floor = channel, floor  # `floor`: what noise may add to a change, border units
+        self.channel, self.allowance = (
+            channel,
+            allowance,
+        )  # `allowance`: what noise may add to a change, border units
         self.chosen = source  # the only source that may speak, if the owner chose one
         self.low, self.high = channel.low, channel.high
         self.value: float | None = None
@@ -97,7 +100,7 @@ class Gate:
         if dt <= 0.0:
             return Quality.OUT_OF_ORDER
         gap = abs(reading.value - self.value)
-        if gap > self.floor and dt < 3.0 * self.stale_s() and self._jumped(reading.value, self.value, dt):
+        if gap > self.allowance and dt < 3.0 * self.stale_s() and self._jumped(reading.value, self.value, dt):
             return self._settle(reading.value, t, motion * dt)
         self._candidate = None
         if self._frozen is not None and self._frozen.stuck(reading.value, t, motion):
@@ -106,7 +109,7 @@ class Gate:
         return Quality.OK
 
     def _jumped(self, value: float, before: float, dt: float) -> bool:
-        return abs(self.difference(value, before)) > self.floor + self.channel.max_rate * dt
+        return abs(self.difference(value, before)) > self.allowance + self.channel.max_rate * dt
 
     def difference(self, value: float, before: float) -> float:
         """value - before, the short way round for an angle."""

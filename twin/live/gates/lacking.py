@@ -25,7 +25,7 @@ from twin.physics.state import Situation
 SHAFT_SAID = "propeller_rate_rpm against the speed: the ship moves as if the shaft turned otherwise"
 RUDDER_SAID = "rudder_angle_deg against the turning: the ship turns as if the rudder stood otherwise"
 PROPELLER = CORE.index("propeller")
-STILL = radians(0.5)
+RUDDER_REST_RAD = radians(0.5)
 SLACK, OF_MOMENTS = radians(4.0), 0.15  # as in rudder_feedback.py
 OF_FORCES = 0.35
 SETTLED = 3.0  # time constants of the observer: a twentieth of the first sample's noise is left
@@ -120,7 +120,7 @@ class Lacking:
         """What the moment that is lacking has changed by, in rudder angle, since the feedback came to stand;
         while it moves nothing counts."""
         lacks = N / per_rad
-        if self._stands is None or abs(delta - self._stands) > STILL:
+        if self._stands is None or abs(delta - self._stands) > RUDDER_REST_RAD:
             self._stands = delta
             self._usual += (lacks - self._usual) / USUAL_BLOCKS
             self._rudder.feed(lacks - self._usual, inf)

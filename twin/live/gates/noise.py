@@ -13,9 +13,9 @@ from collections.abc import Mapping
 NOW, USUALLY = 16, 600  # samples that either mean remembers
 ENOUGH = 50  # samples from which the usual is known
 LOUD, QUIET = 16.0, 6.0  # times the usual variance: said above the first, until below the second
-MOST = 4.0 * LOUD  # one sample counts no more than that: a spike is not noise
+SAMPLE_LIMIT = 4.0 * LOUD  # one sample counts no more than that: a spike is not noise
 SLOWLY = 0.1  # of the usual pace at which a loud channel teaches
-LEAST = 0.01  # of what noise may add to a change (Gate.floor): noise below it does not matter
+LEAST_NOISE = 0.01  # of what noise may add to a change (Gate.allowance): noise below it does not matter
 
 
 INSTRUMENTS = (  # what one instrument measures; the sea moves all of them at once
@@ -30,10 +30,10 @@ class NoiseWatch:
     """The channels of one ship; `loud` are those that are far noisier than they were while no other
     instrument is restless, and what a sample of each is worth now."""
 
-    def __init__(self, floors: Mapping[str, float]):
+    def __init__(self, allowances: Mapping[str, float]):
         self.loud: dict[str, float] = {}
         self._of = {
-            name: (Noise(floors[name]), instrument) for instrument in INSTRUMENTS for name in instrument
+            name: (Noise(allowances[name]), instrument) for instrument in INSTRUMENTS for name in instrument
         }
         self._restless: set[str] = set()
 
@@ -60,10 +60,10 @@ class Noise:
 
     __slots__ = ("_count", "_d", "_grain", "_last", "_least", "_now", "_usual", "loud", "restless")
 
-    def __init__(self, floor: float):
+    def __init__(self, allowance: float):
         self.loud = self.restless = False  # far above its usual noise; somewhat
-        self._least = LEAST * floor
-        self._grain = floor
+        self._least = LEAST_NOISE * allowance
+        self._grain = allowance
         self._last: tuple[float, float] | None = None  # the last change, and over how long
         self._d = 0.0
         self._now = self._usual = 0.0
@@ -94,7 +94,7 @@ class Noise:
     def _judge(self, both: float) -> None:
         self._count += 1
         known = self._count > ENOUGH
-        most = MOST * self._floor()
+        most = SAMPLE_LIMIT * self._floor()
         seen = min(max(both, -most), most) if known else both
         self._now += (seen - self._now) / min(self._count, NOW)
         self.restless = known and self._now > QUIET * self._floor()

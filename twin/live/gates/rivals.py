@@ -11,8 +11,8 @@ from twin.live.signals.readings import Reading
 
 BLOCK_S = 4.0
 FORGET_S = 20.0  # a rival that has not spoken for so long is spoken of no more
-# least scale and greatest difference that is usual, in what noise may add to a change (Gate.floor)
-LEAST, MOST = 0.1, 1.0
+# least scale and greatest difference that is usual, in what noise may add to a change (Gate.allowance)
+LEAST_SCALE, GREATEST_DIFFERENCE = 0.1, 1.0
 PAIRS = 64  # a hostile sender cannot fill the memory
 PLACES = {"north_m": 0, "east_m": 1}
 APART_M = 150.0  # antennas of one ship
@@ -59,9 +59,9 @@ class RivalPair:
     """The mean difference of two sources over blocks of time."""
 
     def __init__(self, gate: Gate):
-        floor = min(gate.floor, 10.0)
-        most = APART_M if gate.channel.name in PLACES else MOST * floor
-        self.test = Cusum(LEAST * floor, most)
+        allowance = min(gate.allowance, 10.0)
+        most = APART_M if gate.channel.name in PLACES else GREATEST_DIFFERENCE * allowance
+        self.test = Cusum(LEAST_SCALE * allowance, most)
         self.heard_s = -1e18
         self._sum, self._count, self._since_s = 0.0, 0, -1e18
 

@@ -17,7 +17,7 @@ from twin.physics.model import CORE, Model
 from twin.physics.ship import Ship
 from twin.physics.state import Situation
 
-STILL = radians(0.5)  # a feedback within this of where it was has not moved
+FEEDBACK_REST_RAD = radians(0.5)  # a feedback within this of where it was has not moved
 SLACK = radians(4.0)  # rudder that gusts and the model's errors may look like
 # shares of hull's and rudder's moments, and of a movement, that a model may be wrong by
 OF_MOMENTS, OF_MOVEMENT = 0.15, 0.4
@@ -48,7 +48,7 @@ class Helm:
         a = min(2.0 * dt / self.time_s, 0.5)
         self._low += a * (rudder - self._low)
         self._lower += a * (self._low - self._lower)
-        if self._at is None or abs(delta - self._at) > STILL:
+        if self._at is None or abs(delta - self._at) > FEEDBACK_REST_RAD:
             self._moves(delta, unexplained_Nm)
             return False
         if self._fades_s > 0.0:

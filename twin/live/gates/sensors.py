@@ -43,10 +43,10 @@ class Sensors:
     """All channels of one ship; `rejected` counts the samples that were refused."""
 
     def __init__(self, ship: Ship, sources: dict[str, str] | None = None, max_delay_s: float = 2.0):
-        floors = noise_allowances(ship)
+        allowances = noise_allowances(ship)
         self._awaited = sources = dict(sources or {})  # channel: the source that should speak and has not yet
         self.gates = {
-            c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name))
+            c.name: Gate(c, allowances.get(c.name, FAR), _frozen(c.name, allowances), sources.get(c.name))
             for c in CHANNELS
         } | gates_of(ship, sources)
         if not ship.actuators:
@@ -55,7 +55,7 @@ class Sensors:
                 -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
                 FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
             )
-        self._noise = NoiseWatch(floors)
+        self._noise = NoiseWatch(allowances)
         self.stamps = Stamps(max_delay_s)
         self.rivals = Rivals()
         self.rejected = 0
@@ -262,7 +262,7 @@ def noise_allowances(ship: Ship) -> dict[str, float]:
     }
 
 
-def _frozen(name: str, floors: dict[str, float]) -> Frozen | None:
+def _frozen(name: str, allowances: dict[str, float]) -> Frozen | None:
     if name in MOVING:
-        return Frozen(least=0.5 * floors[name])
+        return Frozen(least=0.5 * allowances[name])
     return Frozen() if name in NOISY else None

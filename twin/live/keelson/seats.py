@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from twin.live.keelson.topics import address, topic_of
 from twin.live.signals.channels import BY_NAME
 
-MOST = 8  # sources heard for a subject, besides the one that the owner named; a ship has two or three
+MAX_SOURCES = 8  # sources heard for a subject, besides the one that the owner named; a ship has two or three
 MAX_KEY = 512  # bytes of a key
 # a source that is silent for so long, and for as long as its channel keeps, gives its seat up
 SILENT_S = 60.0
@@ -49,9 +49,9 @@ class Seats:
         # of one subject many actuators speak, each with sources of its own
         what = topic.channels[0] if "." in topic.channels[0] else place.subject
         seated = self._heard_s.setdefault(what, {})
-        if len(seated) >= MOST:
+        if len(seated) >= MAX_SOURCES:
             self._stand_up(seated, now_s - max(SILENT_S, *(BY_NAME[c].stale_s for c in topic.channels)))
-        if len(seated) >= MOST:
+        if len(seated) >= MAX_SOURCES:
             return self._refuse(what, f"{place.source[:40]!r}", now_s)
         seated[key] = now_s
         self._subject[key] = what
@@ -65,7 +65,7 @@ class Seats:
         self.refused += 1
         self._until_s = now_s + NOTICE_S
         self._said = (
-            f"{subject}: more than {MOST} sources speak for it, {who} is not heard. Name the right one under "
-            "[sources], and keep other senders off the bus ([bus] file)"
+            f"{subject}: more than {MAX_SOURCES} sources speak for it, {who} is not heard. Name the right "
+            "one under [sources], and keep other senders off the bus ([bus] file)"
         )
         return False

@@ -22,7 +22,7 @@ REACH = 2.0  # how far a number may go from the ship file's, in deviations of it
 # the same where it changes its inertia or the water it feels: all slopes change with it, and the certificate
 # must hold
 NEAR = 0.5
-STEP = 0.1  # of a secant, in deviations of the prior
+SECANT_STEP = 0.1  # of a secant, in deviations of the prior
 
 
 class Movable(NamedTuple):
@@ -116,7 +116,7 @@ class Columns:
         value = number.of(model.effects)
         if value is None:
             return None
-        share = STEP if number.high - value > value - number.low else -STEP
+        share = SECANT_STEP if number.high - value > value - number.low else -SECANT_STEP
         return Model(model.ship, moved(model.effects, (number,), (value + share * number.sd,))), share
 
 

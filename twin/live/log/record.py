@@ -1,9 +1,9 @@
 """The log: a thread that writes MCAP files and never holds up the loop.
 
-`Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S`, or when `FULL`
-messages wait, and calls fdatasync, so a kill or a power cut loses at most half a second. When the disk is
-full, read-only or gone, the log stops, says so in words and counts what it could not keep; the twin goes on,
-and the log resumes by itself."""
+`Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S`, or when
+`MAX_WAITING` messages wait, and calls fdatasync, so a kill or a power cut loses at most half a second. When
+the disk is full, read-only or gone, the log stops, says so in words and counts what it could not keep; the
+twin goes on, and the log resumes by itself."""
 
 import os
 import time
@@ -28,7 +28,7 @@ NOTICE_S = 10.0  # how long a loss that is over is still said
 TRIM_S = 10.0  # between two looks at what the folder takes
 TRIMMED_S = 60.0  # how long it is said that old files were deleted
 NO_LIMITS = Quota()
-FULL = 256  # messages that wait no longer: a flood must not pile up in memory
+MAX_WAITING = 256  # messages that wait no longer: a flood must not pile up in memory
 QUEUE = 4096  # messages the loop may be ahead of the disk (4 s at 50 Hz with 20 sensors); the oldest go first
 MAX_CHANNELS = 4096  # topics in one file: the format ends at 65 535, and each waits in memory for the index
 Item = tuple[str, str, bytes, int, int]  # topic, type name, payload, log and publish time [ns since 1970]
@@ -95,7 +95,7 @@ class Recorder:
             self._dropped += 1
             self._say(f"log: the disk at {self.folder} is too slow, messages are dropped")
         self._queue.append((topic, type_name, payload, log_ns, log_ns if publish_ns is None else publish_ns))
-        if len(self._queue) == FULL:
+        if len(self._queue) == MAX_WAITING:
             self._wake.set()
 
     @property

@@ -30,5 +30,5 @@ def at_rest(ship: Ship) -> dict[str, float]:
 
 def with_measured_controls(s: Situation, si: Mapping[str, float]) -> None:
     """Puts what is measured of the actuators into a situation that had something else of them."""
-    if s.told:
-        s.told = {k: si.get(k, x) for k, x in s.told.items()}
+    if s.orders:
+        s.orders = {k: si.get(k, x) for k, x in s.orders.items()}

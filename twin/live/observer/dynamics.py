@@ -157,12 +157,12 @@ class Dynamics:
             if name in si:
                 setattr(s, name, si[name])
         if self._rest:
-            s.told = self._rest
+            s.orders = self._rest
             with_measured_controls(s, self._controls)
         else:
             for name, value in self.held.items():
                 setattr(s, name, value)
-        self._steering.take(s.told or {"delta": s.delta})
+        self._steering.take(s.orders or {"delta": s.delta})
         self._steering.follow(s)
         missing = tuple([need for need in self._needed if need not in si])
         if missing not in self._models:

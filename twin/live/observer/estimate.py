@@ -47,10 +47,10 @@ class Estimate:
 class Doubt:
     """How sure one state is: `sigma` grows while the model runs alone and shrinks with every sample."""
 
-    __slots__ = ("floor", "sigma", "spread", "usual")
+    __slots__ = ("least_spread", "sigma", "spread", "usual")
 
     def __init__(self, usual: float):
-        self.usual, self.floor = usual, 0.01 * usual * usual
+        self.usual, self.least_spread = usual, 0.01 * usual * usual
         self.sigma = 0.0
         self.spread = usual * usual  # mean squared innovation
 
@@ -60,11 +60,11 @@ class Doubt:
 
     def learn(self, gap: float) -> None:
         """What innovations are usual, from one that is within the limit."""
-        self.spread += 0.02 * (1.2 * gap * gap + self.floor - self.spread)
+        self.spread += 0.02 * (1.2 * gap * gap + self.least_spread - self.spread)
 
     def shrink(self, a: float) -> None:
         """A sample pulled by the share a."""
-        kept, noise = (1.0 - a) * self.sigma, max(self.spread - self.sigma * self.sigma, self.floor)
+        kept, noise = (1.0 - a) * self.sigma, max(self.spread - self.sigma * self.sigma, self.least_spread)
         self.sigma = sqrt(kept * kept + a * a * noise)
 
 

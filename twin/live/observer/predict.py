@@ -22,7 +22,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 
 MOST_STEPS = 8.0  # in one tick
-STEP = 0.15  # of L/U_0
+STEP_LENGTHS = 0.15  # of L/U_0
 RAYLEIGH = 1.51  # the 68 % quantile of a distance in the plane, in deviations along one axis
 ABSURD_MPS, ABSURD_RADPS = 100.0, 10.0  # faster than any ship: a helm or engine signal that cannot be
 LEARNED = 20  # errors seen before the uncertainty counts as learned
@@ -72,7 +72,7 @@ class Predictor:
     ):
         self.horizons_s = tuple(sorted(horizons_s))
         first = self.horizons_s[0]
-        self.step_s = first / ceil(first / (STEP * ship.L_pp / ship.U_0))
+        self.step_s = first / ceil(first / (STEP_LENGTHS * ship.L_pp / ship.U_0))
         steps = ceil(self.horizons_s[-1] / self.step_s) + len(self.horizons_s) + 1
         # not whole: some ticks have one more than others
         self.steps_a_tick = min(steps / (refresh_s * rate_hz), MOST_STEPS)

@@ -21,7 +21,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates, Situation
 
 KEPT_S = 1.0  # how far back a sample may correct
-FULL = 0.8  # share of an error that a sample takes away
+FULL_GAIN = 0.8  # share of an error that a sample takes away
 PLACE = min(DELAYED * HELD / (1.0 + HELD), A_MAX)  # the same of positions, which no certificate covers
 LENGTH = 0.008  # of L/U_0: an inner step, about
 FROM = 2.0 * LENGTH  # a longer period asks for inner steps
@@ -142,7 +142,7 @@ class RollBack(Observer):
             taken_s = min(max(measured.time[source], self._nodes[0][0]), measured.now_s)
             own, weight = source == state and state not in measured.derived, measured.weights.get(source, 1.0)
             counts = own and taken_s == measured.time[source] and weight == 1.0
-            share = weight * (PLACE if i < 2 else FULL)
+            share = weight * (PLACE if i < 2 else FULL_GAIN)
             limit = self.sigma.of[state].limit()
             heard.append(LateSample(taken_s, i, si[source] + drift, limit, share, counts))
         return heard

@@ -75,13 +75,13 @@ class ActuatorGears:
     def follow(self, s: Situation) -> None:
         """Put the actuators where they are at `s.t` [s]."""
         if not self.gears:
-            s.told = self.orders
+            s.orders = self.orders
             return
-        told = dict(self.orders)
+        orders = dict(self.orders)
         for name, gears in self.gears.items():
             for gear in gears:
-                told[name] = gear.turn(told[name], s.t)  # type: ignore[arg-type]
-        s.told = told
+                orders[name] = gear.turn(orders[name], s.t)  # type: ignore[arg-type]
+        s.orders = orders
 
     def take(self, si: Mapping[str, float]) -> None:
         """Take the orders that were measured."""

@@ -102,7 +102,7 @@ class Actuator:
         """Its channels by their whole names, as a voyage has them."""
         return tuple(f"{self.name}.{c}" for c in self.channels)
 
-    def told(self) -> tuple[str, ...]:
+    def estimated(self) -> tuple[str, ...]:
         """Its numbers that voyages can tell."""
         has = self.attributes
         return tuple(
@@ -127,10 +127,10 @@ class Actuator:
             self._made[key] = (ship, coefficients(made))
         return self._made[key][1]  # type: ignore[no-any-return]
 
-    def force(self, told: Mapping[str, Number], u: Number, v: Number, r: Number, ship: ShipLike) -> Tau:
-        """(X [N], Y [N], N [N m]) in body axes; `told`: what is recorded of all actuators, `name.attribute`
+    def force(self, orders: Mapping[str, Number], u: Number, v: Number, r: Number, ship: ShipLike) -> Tau:
+        """(X [N], Y [N], N [N m]) in body axes; `orders`: what is recorded of all actuators, `name.attribute`
         in SI; (u, v, r): the ship through the water."""
-        return self._of_kind(self, told, u, v, r, ship)
+        return self._of_kind(self, orders, u, v, r, ship)
 
     @cached_property
     def _of_kind(self) -> Any:

@@ -13,7 +13,7 @@ from .kinds import KINDS
 
 KEYS = {f.metadata.get("key", f.name): f for f in NUMBERS.values()}
 WORDS = ("name", "kind", "channels")
-MOST = 16  # actuators of one ship
+MAX_ACTUATORS = 16  # actuators of one ship
 NAME = r"[a-z][a-z0-9_]{0,30}"
 
 
@@ -22,8 +22,14 @@ def read(
 ) -> tuple[tuple[Actuator, ...], dict[str, Any]]:
     """The actuators, and by `name.number` what the file notes of each number (its standard error ...).
     SettingsError: they are no such tables, or two have one name."""
-    if not isinstance(tables, list) or len(tables) > MOST or not all(isinstance(t, Mapping) for t in tables):
-        raise SettingsError(f"{where}actuators: up to {MOST} tables are needed, each under [[actuators]].")
+    if (
+        not isinstance(tables, list)
+        or len(tables) > MAX_ACTUATORS
+        or not all(isinstance(t, Mapping) for t in tables)
+    ):
+        raise SettingsError(
+            f"{where}actuators: up to {MAX_ACTUATORS} tables are needed, each under [[actuators]]."
+        )
     found, notes = list[Actuator](), dict[str, Any]()
     for i, table in enumerate(tables, 1):
         made = _one(table, f"{where}actuators {i}", value, notes)

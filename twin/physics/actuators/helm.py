@@ -12,7 +12,7 @@ from .actuator_channels import DRIVES
 from .kinds import SPAN_US, STOP_US
 
 ACROSS = "tunnel_thruster"  # drives no ship ahead
-FULL = 35.0 * pi / 180.0  # helm at which thrusters that cannot turn give all and nothing
+FULL_HELM_RAD = 35.0 * pi / 180.0  # helm at which thrusters that cannot turn give all and nothing
 
 
 def actuator_orders(
@@ -45,7 +45,11 @@ def _one(a: Actuator, attribute: str, ship: Ship, helm: Number, power: Number, t
     if a.kind == ACROSS:
         share = power
     else:
-        share = power if turning or not a.y else power * (1.0 - helm / FULL * (1.0 if a.y > 0.0 else -1.0))
+        share = (
+            power
+            if turning or not a.y
+            else power * (1.0 - helm / FULL_HELM_RAD * (1.0 if a.y > 0.0 else -1.0))
+        )
     if attribute == "pwm":
         return STOP_US + SPAN_US * share
     if attribute == "rate":

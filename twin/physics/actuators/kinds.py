@@ -109,15 +109,15 @@ class Kind(NamedTuple):
     doc: str
 
 
-def push(a: OneActuator, told: Orders, u_a: Number, ship: ShipLike) -> Number:
+def push(a: OneActuator, orders: Orders, u_a: Number, ship: ShipLike) -> Number:
     """Thrust [N] along the actuator's own axis, with the water running along it at u_a [m/s]."""
     has = a.keys
     if "thrust" in has:
-        return a.gain * told[has["thrust"]]
+        return a.gain * orders[has["thrust"]]
     if "rate" in has:
-        pitch = told[has["pitch"]] / a.pitch_0 if "pitch" in has else 1.0
-        return _by_turns(a, told[has["rate"]], pitch, u_a, ship)
-    c = told[has["command"]] if "command" in has else (told[has["pwm"]] - STOP_US) / SPAN_US
+        pitch = orders[has["pitch"]] / a.pitch_0 if "pitch" in has else 1.0
+        return _by_turns(a, orders[has["rate"]], pitch, u_a, ship)
+    c = orders[has["command"]] if "command" in has else (orders[has["pwm"]] - STOP_US) / SPAN_US
     return _by_command(a, c, u_a, ship)
 
 
@@ -175,40 +175,40 @@ def _at(a: OneActuator, X: Number, Y: Number) -> core.Tau:
     return X, Y, a.x * Y - a.y * X
 
 
-def fixed(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def fixed(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its thrust pushes ahead, wherever it stands."""
-    return _at(a, push(a, told, u - a.y * r, ship), 0.0)
+    return _at(a, push(a, orders, u - a.y * r, ship), 0.0)
 
 
-def azimuth(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def azimuth(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its angle is where the thrust pushes the ship to: 0 ahead, positive to starboard."""
-    angle = told[a.keys["angle"]] + a.trim
+    angle = orders[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
-    T = push(a, told, (u - a.y * r) * c + (v + a.x * r) * s, ship)
+    T = push(a, orders, (u - a.y * r) * c + (v + a.x * r) * s, ship)
     return _at(a, T * c, T * s)
 
 
-def steered(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def steered(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its angle is counted like a rudder's: positive turns the ship to starboard when the jet is astern."""
-    angle = told[a.keys["angle"]] + a.trim
+    angle = orders[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
-    T = push(a, told, u - a.y * r, ship)
+    T = push(a, orders, u - a.y * r, ship)
     return _at(a, T * c, -T * s)
 
 
-def tunnel(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def tunnel(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Pushes to starboard when told to go ahead, the less the faster the ship: half of it at U_half."""
     share = 1.0 if a.U_half is None else 1.0 / (1.0 + (u / a.U_half) ** 2)
-    return _at(a, 0.0, share * push(a, told, v + a.x * r, ship))
+    return _at(a, 0.0, share * push(a, orders, v + a.x * r, ship))
 
 
-def propeller(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def propeller(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """As the ship's own propeller and rudder, with the hull's wake and thrust deduction."""
     c, along = a.coefficients(ship), u - a.y * r
-    T = push(a, told, c.wake_share * along, ship)
+    T = push(a, orders, c.wake_share * along, ship)
     X, Y, N = c.thrust_share * T, 0.0, 0.0
     if "angle" in a.keys:
-        drag, Y, N = core.rudder(along, v, r, told[a.keys["angle"]] + a.trim, T, c)
+        drag, Y, N = core.rudder(along, v, r, orders[a.keys["angle"]] + a.trim, T, c)
         X = X + drag
     return X, Y, N - a.y * X
 

@@ -31,7 +31,9 @@ BLUNT = {
 }  # a of each, and a over C_b; the terms in B/L left out
 LIFT = {"Y_uv": 0.67, "Y_ur": 0.8, "N_ur": 0.3}  # share by which a trim of one draught raises them
 LEVER = -0.27  # [L] by which N_uv changes with Y_uv
-LEAST = 0.2  # share of the area above the water that stays: superstructure, however deep it lies
+SUPERSTRUCTURE_SHARE = (
+    0.2  # share of the area above the water that stays: superstructure, however deep it lies
+)
 
 
 class Loading(Force):
@@ -81,8 +83,12 @@ class Loading(Force):
             T=ship.T * k,
             x_G=x_G,
             I_z=ship.I_z * (1.0 + self.mass) + m * (x_G * x_G - ship.x_G * ship.x_G),
-            A_F=None if ship.A_F is None else maximum(ship.A_F - ship.B * dry, LEAST * ship.A_F),
-            A_L=None if ship.A_L is None else maximum(ship.A_L - ship.L_pp * dry, LEAST * ship.A_L),
+            A_F=None
+            if ship.A_F is None
+            else maximum(ship.A_F - ship.B * dry, SUPERSTRUCTURE_SHARE * ship.A_F),
+            A_L=None
+            if ship.A_L is None
+            else maximum(ship.A_L - ship.L_pp * dry, SUPERSTRUCTURE_SHARE * ship.A_L),
             derivatives=replace(d, **primes),
         )
 

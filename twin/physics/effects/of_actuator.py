@@ -54,8 +54,8 @@ class ActuatorForce(OfActuator, Force):
 
     def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         a = ship.actuator(self.actuator)
-        was = a.force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
-        now = self._altered(a).force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
+        was = a.force(s.orders, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
+        now = self._altered(a).force(s.orders, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
         return ForceVector(now[0] - was[0], now[1] - was[1], now[2] - was[2])
 
     def _altered(self, a: Actuator) -> Actuator:

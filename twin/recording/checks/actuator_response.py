@@ -22,8 +22,8 @@ from twin.recording.checks.wirings import RIGHT, OrderArrays, Wiring, stop, wiri
 AXES = ("surge", "sway", "yaw")
 LENGTHS = (3, 6, 12, 24, 48)  # of windows, in steps of STEP_S at least
 STEP_S = 0.2
-FEWEST = 12  # windows that do not overlap
-SEEN = 0.1  # share of an axis' motion that thrust must explain to tell anything of it
+LEAST_WINDOWS = 12  # windows that do not overlap
+LEAST_SHARE = 0.1  # share of an axis' motion that thrust must explain to tell anything of it
 LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded one
 # models of hulls are off by less: of an axis' motion, what the other wiring must explain more, or the most
 # that it may leave of what is not explained as recorded; to be believed, and to be told
@@ -105,7 +105,7 @@ def best_window(view: VoyageView, ship: Ship) -> list[TriedWiring]:
     motion = np.array([view.velocity.real, view.velocity.imag, view.si("yaw_rate_degps")])
     columns = [(w, _columns(view, ship, motion, w)) for w in wirings(ship.actuators)]
     step = max(view.step_s, STEP_S)
-    seconds = [k * step for k in LENGTHS if k * step * FEWEST < view.voyage.duration_s]
+    seconds = [k * step for k in LENGTHS if k * step * LEAST_WINDOWS < view.voyage.duration_s]
     found = [[_tried(view, motion, w, c, s) for w, c in columns] for s in seconds]
     clear = [ts for ts in found if max(t.total for t in ts) > LEAD]
     return max(clear, key=lambda ts: max(t.total for t in ts), default=[])
@@ -145,14 +145,14 @@ def _tried(
         push = np.stack([view.summed(columns[i, :, k], first, last) for k in range(columns.shape[2])], axis=1)
         others = np.stack([*(view.summed(x, first, last) for x in hull[i]), np.ones(first.size)], axis=1)
         ok = np.isfinite(change) & np.isfinite(push).all(1) & np.isfinite(others).all(1)
-        if np.count_nonzero(ok) / 2 < FEWEST or not np.ptp(push[ok], axis=0).any():
+        if np.count_nonzero(ok) / 2 < LEAST_WINDOWS or not np.ptp(push[ok], axis=0).any():
             continue
         both = _beside(others[ok], np.column_stack([change, push])[ok])
         y, size = both[:, 0], float(both[:, 0] @ both[:, 0])
         if size > 0.0:
             left = nnls(both[:, 1:], y)[1] ** 2 / size
             share[i] = max(0.0, 1.0 - left)
-            gain[i] = -0.25 * y.size * np.log(max(left, 1e-12)) if share[i] > SEEN else 0.0
+            gain[i] = -0.25 * y.size * np.log(max(left, 1e-12)) if share[i] > LEAST_SHARE else 0.0
     return TriedWiring(wiring, columns, gain, share)
 
 

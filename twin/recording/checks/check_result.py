@@ -12,7 +12,7 @@ class Check:
     ok: bool
     text: str
     unusable: bool = False
-    told: bool = True  # whether the data could tell at all
+    informative: bool = True  # whether the data could tell at all
 
     def as_json(self) -> dict[str, Any]:
         """The entry of `data_checks`."""
@@ -21,7 +21,7 @@ class Check:
             "ok": self.ok,
             "text": self.text,
             "proved": self.unusable,
-            "told": self.told,
+            "told": self.informative,
         }
 
 
@@ -32,7 +32,7 @@ def good(name: str, text: str) -> Check:
 
 def cannot_tell(name: str, why: str) -> Check:
     """The check had too little to go by, and says why; it passes."""
-    return Check(name, True, f"cannot tell: {why}", told=False)
+    return Check(name, True, f"cannot tell: {why}", informative=False)
 
 
 def doubtful(name: str, text: str) -> Check:

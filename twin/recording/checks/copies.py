@@ -12,7 +12,7 @@ from twin.recording.units import unit_of
 
 NAME = "copies"
 SAME = 0.95  # share of the rows that are alike
-FEWEST = 30
+LEAST_COPIES = 30
 LEAST_TURN_DEG = 20.0
 SAME_DEG = 0.03  # course and heading that were rounded apart
 MAY_BE = frozenset(("bank_distance_port_m", "bank_distance_starboard_m"))
@@ -50,7 +50,7 @@ def identical(view: VoyageView, a: str, b: str) -> bool:
     """Whether two channels are alike to the last digit wherever both were read, and both vary."""
     x, y = view.voyage[a], view.voyage[b]
     both = np.isfinite(x) & np.isfinite(y)
-    if np.count_nonzero(both) < FEWEST or np.unique(x[both]).size < 10:
+    if np.count_nonzero(both) < LEAST_COPIES or np.unique(x[both]).size < 10:
         return False
     apart = np.abs(x[both] - y[both])
     apart = np.minimum(apart, np.abs(apart - 360.0)) if BY_NAME[a].wraps else apart
@@ -66,7 +66,7 @@ def course_as_heading(view: VoyageView) -> str:
     u, w = v["surge_velocity_mps"], v["sway_velocity_mps"]
     moving = np.isfinite(u) & np.isfinite(w) & (np.hypot(u, w) > 0.4 * view.speed)
     swung = np.degrees(np.ptp(view.psi[np.isfinite(view.psi)]))
-    if np.count_nonzero(moving) < FEWEST or swung < LEAST_TURN_DEG:
+    if np.count_nonzero(moving) < LEAST_COPIES or swung < LEAST_TURN_DEG:
         return ""
     drift = np.abs(np.degrees(np.arctan2(w[moving], u[moving])))
     if float(np.mean(drift < SAME_DEG)) < SAME:

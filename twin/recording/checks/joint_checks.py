@@ -11,7 +11,7 @@ from twin.recording.checks.undo import HEADING, measured, remade
 from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.voyage import Voyage
 
-MOST = 3  # mistakes that are told one after the other
+MAX_MISTAKES = 3  # mistakes that are told one after the other
 OF_MOTION = (
     "velocity_frame",
     "yaw_rate",
@@ -59,7 +59,7 @@ def named_mistakes(view: VoyageView, answers: dict[str, Check]) -> tuple[dict[st
             voyage = view.voyage
             changed = replace(voyage, columns={**voyage.columns, HEADING: psi})
             here = VoyageView(remade_by(voyage, changed), view.ship)
-    for _ in range(MOST):
+    for _ in range(MAX_MISTAKES):
         found: Explained | None = explain(here)
         if found is None or (found.check.name in named and named[found.check.name].unusable):
             break

@@ -24,7 +24,7 @@ MEAN_DRIFT, USUAL_DRIFT = np.radians(45.0), np.radians(40.0)  # more is no drift
 ASTERN = 0.25  # share of the time under way, steady, that may go against the shaft
 STEADY = 0.1  # change of speed in a window, in usual speeds
 TURNS_ON = 0.3  # of the largest usual shaft rate: the thrust is on
-FEWEST = 10
+LEAST_PAIRS = 10
 WORST = 8.0  # a relation that is broken is broken
 
 
@@ -82,7 +82,7 @@ def drift(view: VoyageView) -> np.ndarray | None:
     beta = np.angle(way * np.exp(-1j * view.psi))
     return (
         np.where(under_way, beta, np.nan)
-        if np.count_nonzero(np.isfinite(beta[under_way])) >= FEWEST
+        if np.count_nonzero(np.isfinite(beta[under_way])) >= LEAST_PAIRS
         else None
     )
 
@@ -122,7 +122,7 @@ def thrust(view: VoyageView) -> float | None:
         & (np.abs(way) > 0.4 * view.speed * 20.0)
     )
     on &= np.abs(turns) > 0.0
-    return float(np.mean(turns[on] * way[on] < 0.0) / ASTERN) if np.count_nonzero(on) >= FEWEST else None
+    return float(np.mean(turns[on] * way[on] < 0.0) / ASTERN) if np.count_nonzero(on) >= LEAST_PAIRS else None
 
 
 RELATIONS: tuple[Relation, ...] = (
@@ -132,7 +132,7 @@ RELATIONS: tuple[Relation, ...] = (
     Relation("rudder", rudder, 1.0),
     Relation("thrust", thrust, 0.3),
 )
-USUAL = {relation.name: relation.usual for relation in RELATIONS}
+USUAL_SCATTER = {relation.name: relation.usual for relation in RELATIONS}
 
 
 def offs(view: VoyageView) -> dict[str, float | None]:

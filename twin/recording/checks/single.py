@@ -12,7 +12,7 @@ import numpy as np
 from twin.recording.checks.candidate_mistake import Single
 from twin.recording.checks.check_result import Check, doubtful, wrong
 from twin.recording.checks.compass import fitted
-from twin.recording.checks.relations import USUAL, offs
+from twin.recording.checks.relations import USUAL_SCATTER, offs
 from twin.recording.checks.single_table import singles
 from twin.recording.checks.undo import measured, undone
 from twin.recording.checks.voyage_view import VoyageView
@@ -46,7 +46,7 @@ class Explained:
 
 def cost(off: dict[str, float | None]) -> float:
     """Sum over the relations of log(1 + (x/usual)^2); those that cannot be asked cost nothing."""
-    return sum(float(np.log1p((x / USUAL[name]) ** 2)) for name, x in off.items() if x is not None)
+    return sum(float(np.log1p((x / USUAL_SCATTER[name]) ** 2)) for name, x in off.items() if x is not None)
 
 
 def explain(view: VoyageView) -> Explained | None:

@@ -20,7 +20,7 @@ from twin.recording.checks.wirings import OrderArrays
 LONG_S = 8.0  # told the same for so long, and so many ship lengths at service speed
 LENGTHS = 10.0
 HELD = {"pwm": 2.0, "command": 0.005}  # by which what is told may stray meanwhile
-STILL = 0.05  # of service speed: it drifts no faster, and yaws no faster over its length
+DRIFT_SHARE = 0.05  # of service speed: it drifts no faster, and yaws no faster over its length
 DRIVEN = 4.0  # times its speed that what is told should give
 
 
@@ -45,7 +45,7 @@ def actuator_zero(view: VoyageView) -> Check:
     saw = f"it lies still ({num(speed, 2)} m/s) for {(last - first) * view.step_s:.0f} s while " + ", ".join(
         f"{a.name} is told {as_given(told[a.name], 5)}" for a in parts
     )
-    if driven < DRIVEN * max(speed, STILL * float(ship.U_0) / DRIVEN):
+    if driven < DRIVEN * max(speed, DRIFT_SHARE * float(ship.U_0) / DRIVEN):
         return good(name, f"{saw}, at which the ship file has it stand still.")
     zeros = ", ".join(
         f"{num(_share_ordered(a, told[a.name]), 3)} for {a.name}" for a in parts if pushed[a.name]
@@ -80,8 +80,8 @@ def _share(a: Actuator, told: float) -> float:
 def _rests(view: VoyageView, ship: Ship, parts: tuple[Actuator, ...]) -> list[tuple[int, int]]:
     """From where to where it lay still, all of them told the same."""
     told: OrderArrays = {a.name: view.si(_channel(a)) for a in parts}
-    still = (np.abs(view.velocity) < STILL * float(ship.U_0)) & (
-        np.abs(view.si("yaw_rate_degps")) < STILL * float(ship.U_0) / float(ship.L_pp)
+    still = (np.abs(view.velocity) < DRIFT_SHARE * float(ship.U_0)) & (
+        np.abs(view.si("yaw_rate_degps")) < DRIFT_SHARE * float(ship.U_0) / float(ship.L_pp)
     )
     changes = np.zeros(still.size, bool)
     for a in parts:

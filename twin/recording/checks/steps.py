@@ -18,7 +18,7 @@ NAME = "heading_steps"
 LEAST_DEG = 3.0  # smaller steps are a compass's own
 SIGMAS = 8.0
 LONGEST_PERIOD = 12  # samples: two headings that alternate come back within this
-FEWEST = 6
+LEAST_STEPS = 6
 ALIKE = 0.25  # spread of the steps between two headings, in the step
 NEAR_NORTH_DEG, FAR_DEG = 30.0, 40.0
 STAYS = 10  # samples
@@ -101,7 +101,7 @@ def heading_steps(view: VoyageView) -> Check:
 def in_turn(view: VoyageView, s: StepSamples) -> Check | None:
     """Two headings that take turns: steps all of one size, to and fro."""
     big = s.big
-    if big.size < FEWEST:
+    if big.size < LEAST_STEPS:
         return None
     size, sign = np.abs(s.odd[big]), np.sign(s.odd[big])
     step = float(np.median(size))

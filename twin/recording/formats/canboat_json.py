@@ -15,7 +15,7 @@ from twin.recording.formats.recorder_stamps import Stamp
 from twin.recording.formats.signals import Signals
 
 SAYS = "an NMEA 2000 log as canboat's JSON"
-FULL = 2.0 * pi + 0.01  # directions never above this are in radians
+FULL_TURN_RAD = 2.0 * pi + 0.01  # directions never above this are in radians
 # {group: {field: (quantity, whether it is an angle, factor to the quantity's unit if not)}}
 FIELDS: dict[int, dict[str, tuple[str, bool, float]]] = {
     127245: {"Position": ("rudder_angle_deg", True, 1.0)},
@@ -104,7 +104,7 @@ def in_degrees(out: Signals, angles: set[str], units: str) -> None:
         for n in angles
         if "heading" in n or "course" in n or "angle" in n
     ]
-    if units != "si" and (units == "std" or not full or max(full) > FULL):
+    if units != "si" and (units == "std" or not full or max(full) > FULL_TURN_RAD):
         return
     for name in angles:
         s = out.series[name]

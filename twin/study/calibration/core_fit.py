@@ -76,7 +76,7 @@ class Core:
     # of the gears, the antenna and the wind, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
     antenna: Effect | None  # where it was found, if not where the ship file has it
-    floor: NoiseModel
+    noise_model: NoiseModel
     temper: float
 
 
@@ -107,7 +107,7 @@ def calibrate(
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
     way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
     progress("estimating the baseline of this ship")
-    lasting_ones = usual(ships[way], tracks, core.floor)
+    lasting_ones = usual(ships[way], tracks, core.noise_model)
     judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
     after = noted(ships[way], "structural", lasting_ones | judged)
     result = _result(ship, after, core, way, errors(Model.of(first), held_out))
@@ -153,15 +153,22 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("estimating the noise model")
-    floor, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
+    noise_model, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again with this noise model")
-    found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
+    found = fit(tracks, rough.model, unknowns, known, noise_model, temper=temper, smooth=True)
     asked = tuple(e for e in found.model.effects if type(e) in searched_parts(ship))
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
     parts = {e.__name__: e for e in (*searched_parts(ship), *PARTS.values())}
     numbers = {name: _numbers(found, name, e.with_core) for name, e in parts.items()}
     return Core(
-        tracks, found.model, informed_by(found), (*kept, *asked), numbers, significant(found), floor, temper
+        tracks,
+        found.model,
+        informed_by(found),
+        (*kept, *asked),
+        numbers,
+        significant(found),
+        noise_model,
+        temper,
     )
 
 
@@ -186,7 +193,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
     # tomorrow's wind is another one
     names = [type(e).__name__ for e in ship.effects if not e.of_recorded_weather()]
     structural = {
-        "floor": plain(asdict(core.floor)),
+        "floor": plain(asdict(core.noise_model)),
         "temper": core.temper,
         "date": today,
         "voyages": voyages,
@@ -227,7 +234,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
         "usual": significantly_there(after, lasting_ones),
         "between_voyages": lasting_ones["between_voyages"],
-        "floor": asdict(core.floor),
+        "floor": asdict(core.noise_model),
         "temper": core.temper,
         "by_regime": lasting_ones["by_regime"],
         "held_out": [

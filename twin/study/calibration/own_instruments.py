@@ -23,7 +23,9 @@ from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
 from twin.study.reference.sailed import Sailed
 
 AGE = "gnss_delay"  # the fault that is the receiver's age
-FEWEST = 3  # voyages that tell of a number before it is called the same on each: two show no scatter
+LEAST_REFERENCES = (
+    3  # voyages that tell of a number before it is called the same on each: two show no scatter
+)
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ def established(asked: OnReferences) -> list[str]:
     """Faults that a ship file may hold as the ship's own: seen on all references together, told by three at
     least, and clear of none on the next voyage too, by the scatter between them."""
     clear = [f for f, far in asked.clear.items() if far > LASTING_SE and _of_kinematics(f)]
-    return [f for f in clear if _voyages_known(asked, f) >= FEWEST]
+    return [f for f in clear if _voyages_known(asked, f) >= LEAST_REFERENCES]
 
 
 def _of_kinematics(fault: str) -> bool:

@@ -3,8 +3,8 @@ stands, and how wind pushes it.
 
 Nothing is wrong on a reference voyage, so an antenna that clearly stands elsewhere was never where the file
 has it (a receiver that reports its centre of gravity, a lever arm left at zero). Wind that was recorded there
-pushed it, and a small ship seldom has a calm; left out, it would bend the core, and the floor would grow
-until it hides what is missing. Kept in mind alone, either would leave every prediction off."""
+pushed it, and a small ship seldom has a calm; left out, it would bend the core, and the noise model would
+grow until it hides what is missing. Kept in mind alone, either would leave every prediction off."""
 
 from collections.abc import Sequence
 

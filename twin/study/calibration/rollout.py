@@ -25,9 +25,9 @@ HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
 SHORTEST_S = HORIZONS_S[0]  # a prediction is judged no sooner: three lengths of a boat are a second or two
 OVERLAP = 3.0  # of the time ahead over that between the beginnings of two predictions
 ROUNDS, TRIES = 2, 4
-SEEN = [0, 1, 2, 3]  # x, y, psi, u: what a prediction is judged by
-STEP = 0.1  # prior widths by which a derivative is changed to see what it does
-LEAST = 0.02  # share by which the cost must fall for another round
+COMPARED_STATES = [0, 1, 2, 3]  # x, y, psi, u: what a prediction is judged by
+DERIVATIVE_STEP = 0.1  # prior widths by which a derivative is changed to see what it does
+LEAST_FALL = 0.02  # share by which the cost must fall for another round
 
 
 @dataclass
@@ -71,14 +71,14 @@ class _PathProblem:
         for t in self.tracks:
             of_track = model.without_inputs(t.missing())[0]
             each = coarse_each(t, of_track, len(Z), ahead, LEADS, ahead / OVERLAP)
-            parts.append([np.nan_to_num(w.off()[..., SEEN]).transpose(1, 0, 2) for w in each])
+            parts.append([np.nan_to_num(w.off()[..., COMPARED_STATES]).transpose(1, 0, 2) for w in each])
         return np.concatenate(parts, axis=1)
 
     def weigh(self, z: np.ndarray) -> None:
         """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share
         most of theirs."""
         usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
-        self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(SEEN) * LEADS * OVERLAP)
+        self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(COMPARED_STATES) * LEADS * OVERLAP)
 
     def residual(self, z: np.ndarray) -> np.ndarray:
         """One error in units of its usual size; what is far off counts as eight times that, no more."""
@@ -106,7 +106,7 @@ def rolled_out(
         problem.weigh(z)
         before = problem.cost(problem.residual(z), z)
         z, after = _descend(problem, z)
-        if after > (1.0 - LEAST) * before:
+        if after > (1.0 - LEAST_FALL) * before:
             break
     return with_values(model, unknowns, problem.values(z), catalogue)
 
@@ -116,7 +116,7 @@ def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
     itself when no step is better."""
     r = problem.residual(z)
     best = problem.cost(r, z)
-    step = np.where(z + STEP <= problem.box[1], STEP, -STEP)
+    step = np.where(z + DERIVATIVE_STEP <= problem.box[1], DERIVATIVE_STEP, -DERIVATIVE_STEP)
     J = (problem.residual_each(z + np.diag(step)) - r).T / step
     JJ, pull = J.T @ J + np.eye(z.size), J.T @ r + z
     for damping in np.geomspace(0.01, 100.0, TRIES):

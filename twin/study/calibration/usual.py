@@ -26,13 +26,13 @@ from twin.study.track.track import Track
 LASTING_SE = 4.0  # standard errors
 
 
-def usual(ship: Ship, tracks: Sequence[Track], floor: NoiseModel) -> dict[str, Any]:
+def usual(ship: Ship, tracks: Sequence[Track], noise_model: NoiseModel) -> dict[str, Any]:
     """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ
-    from voyage to voyage; and the floor `beside` all that. A diagnosis starts from here."""
+    from voyage to voyage; and the noise model `beside` all that. A diagnosis starts from here."""
     model, known = Model.of(ship), of_ship(ship)
     unknowns = usual_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
-    beside = structural_noise_beside(lines, unknowns, floor)
+    beside = structural_noise_beside(lines, unknowns, noise_model)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
     centres = np.array([first_prior(u, ship).centre for u in unknowns])
     references = known_from(lines, unknowns, beside, temper, centres)
@@ -58,7 +58,7 @@ def path_errors(
     tracks: Sequence[Track],
     lines: Sequence[Linear],
     unknowns: Sequence[Unknown],
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     temper: float,
     centres: np.ndarray,
     between: Mapping[str, float],
@@ -71,7 +71,7 @@ def path_errors(
     pull = (centres - np.array([u.centre for u in unknowns])) / sd
     scatter = np.array([between.get(u.label, 0.0) ** 2 for u in unknowns])
     without = models_without(
-        model, unknowns, innovate(lines, [floor])[0], scatter, pull, temper, of_ship(ship)
+        model, unknowns, innovate(lines, [noise_model])[0], scatter, pull, temper, of_ship(ship)
     )
     found = path_error(model, tracks, without)
     return found.entry() if found else {}

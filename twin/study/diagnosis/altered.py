@@ -24,7 +24,7 @@ SCATTER = 0.5  # of single hulls about a regression, as a share of what it says
 SHOWS = 8.0
 # share of its draught by which mass and draught may disagree: other water, a waterplane that is not as usual
 AFLOAT = 0.02
-SURE = 2.5  # standard deviations beyond which they do
+DIFFERENCE_SD = 2.5  # standard deviations beyond which they do
 
 
 def sized(case: Case, found: Found) -> Posterior:
@@ -70,7 +70,7 @@ def floats(case: Case, found: Found) -> bool:
         return float(after.T / before.T - 1.0 - (after.m / before.m - 1.0) * before.C_b / waterplane(before))
 
     slope = np.array([deeper(z + step) - deeper(z - step) for step in 0.01 * np.eye(z.size)]) / 0.02
-    return abs(deeper(z)) < SURE * float(np.hypot(np.sqrt(slope @ C @ slope), AFLOAT))
+    return abs(deeper(z)) < DIFFERENCE_SD * float(np.hypot(np.sqrt(slope @ C @ slope), AFLOAT))
 
 
 def _alters(kind: type[Effect]) -> bool:

@@ -80,7 +80,7 @@ def of_tracks(
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     path = noise_model_of(ship) or NoiseModel()
-    floor, temper = noise_model_of(ship, "beside") or path, _temper(ship)
+    noise_model, temper = noise_model_of(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
@@ -88,9 +88,9 @@ def of_tracks(
         if noise_model_of(ship) is None:
             progress("estimating the noise model")
             path = structural_noise(_of_core(lines, usual), core_unknowns(model))
-            floor = structural_noise_beside(lines, usual, path)
-        temper = temper_of(innovate(lines, [floor])[0], usual)
-        known, _ = from_references(lines, usual, floor, temper)
+            noise_model = structural_noise_beside(lines, usual, path)
+        temper = temper_of(innovate(lines, [noise_model])[0], usual)
+        known, _ = from_references(lines, usual, noise_model, temper)
     else:
         known = from_ship(model, nuisance)
     known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))
@@ -103,7 +103,7 @@ def of_tracks(
         unknowns,
         effects,
         known,
-        floor,
+        noise_model,
         path,
         temper,
         {
@@ -112,8 +112,8 @@ def of_tracks(
         },
         read_lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
         any(manoeuvred(t, ship) for t in tracks),
-        floor.white,
-        floor.sensor,
+        noise_model.white,
+        noise_model.sensor,
         as_before,
         tuple(unnamed),
     )

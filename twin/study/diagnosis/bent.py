@@ -16,7 +16,7 @@ BENT = 0.3  # share of what a number does that is not in proportion to it
 
 def bent_numbers(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
     """Parameters of which what they do is not in proportion to them: about nothing they may not be seen,
-    and a climb may end on a lower top. `mine` (M,): index; `at` (Q,) in prior widths."""
+    and an iteration may end on a lower top. `mine` (M,): index; `at` (Q,) in prior widths."""
     own = [case.effects[i] for i in mine]
     model = with_values(
         case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue

@@ -29,7 +29,9 @@ from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.on_references import KinematicRecord
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of
 
-USUAL = {"heading_delay": "compass"}  # number of kinematics -> whose usual lateness is known (columns.py)
+INSTRUMENT_OF = {
+    "heading_delay": "compass"
+}  # number of kinematics -> whose usual lateness is known (columns.py)
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ def beyond_usual(found: Instruments) -> list[str]:
     deviation and the usual lateness together."""
     usual = {u.name: u.sd for u in lateness_unknowns()}
     out = []
-    for name, whose in USUAL.items():
+    for name, whose in INSTRUMENT_OF.items():
         e = found.of(name)
         if e and e.seen and abs(e.value) > SIGNIFICANT * float(np.hypot(e.sd, usual[whose])):
             out.append(e.unknown.fault)

@@ -15,7 +15,7 @@ from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts
 
 LEAST_ODDS = 1e-3  # probability that is as good as none, and that short of one
-MOST = 30.0  # standard deviations of a number from none, beyond which there is no more to say
+CLEAREST_SD = 30.0  # standard deviations of a number from none, beyond which there is no more to say
 PROBABILITY_LIMITS = (0.05, 0.95)  # what a few hundred answers can show
 
 
@@ -26,7 +26,7 @@ def log_odds(posterior: float) -> float:
 
 
 def _clearness(f: Facts, c: Cause, d: Decision) -> float:
-    return log(1.0 + min(c.significance, MOST))
+    return log(1.0 + min(c.significance, CLEAREST_SD))
 
 
 def _left_little(f: Facts, c: Cause, d: Decision) -> float:
@@ -41,16 +41,16 @@ FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a 
     "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
 OF_CAUSE = {  # of the explanation
-    "constant": -4.83,
-    "log_odds": 0.26,
-    "clearness": 0.86,
-    "left_little": 0.79,
-    "named": 1.35,
-    "of_known_form": 1.84,
+    "constant": -5.48,
+    "log_odds": 0.30,
+    "clearness": 1.04,
+    "left_little": 0.27,
+    "named": 1.48,
+    "of_known_form": 2.28,
 }
-OF_CAUSE_BESIDE = {"constant": -1.32, "log_odds": 1.16}  # the explanation does without it
-OF_NOTHING = {"constant": 0.15, "log_odds": 1.28}  # no cause of ship and instruments is there
-OF_UNKNOWN = {"constant": -0.41, "log_odds": 0.74, "verdict": 0.56}  # what is there has no name
+OF_CAUSE_BESIDE = {"constant": -1.34, "log_odds": 1.07}  # the explanation does without it
+OF_NOTHING = {"constant": 0.19, "log_odds": 1.27}  # no cause of ship and instruments is there
+OF_UNKNOWN = {"constant": -0.35, "log_odds": 0.76, "verdict": 0.78}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:

@@ -47,7 +47,7 @@ SCENARIOS: dict[str, Scenario] = {
     "stranger": Scenario(8.0, 4.0, 0.005, alone=True, unknown=True),
 }
 UNEVEN = 20.0  # log evidence that a scatter of its own at every moment must add
-WAVES = 1.0  # fast part of the floor, of a standard acceleration, in the worst of weather
+WAVES = 1.0  # fast part of the noise model, of a standard acceleration, in the worst of weather
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_UNNAMED = 0.01  # of what is no member of the catalogue
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
@@ -65,13 +65,14 @@ class Case:
     unknowns: tuple[Unknown, ...]  # core, then the parameters of the candidates and of all instruments
     effects: tuple[Unknown, ...]  # parameters of the candidates
     nuisance: Nuisance
-    floor: NoiseModel  # what is left when all unknowns explain what they can
+    noise_model: NoiseModel  # what is left when all unknowns explain what they can
     path: NoiseModel  # what the model alone leaves, when it is run free
     temper: float
     odds: Mapping[str, float]
     lines: tuple[Linear, ...]  # of what is read of each track
     excited: bool  # whether one of the voyages holds a manoeuvre
-    white: tuple[float, float, float]  # fast part of the floor on the reference voyages, before `settle`
+    # fast part of the noise model on the reference voyages, before `settle`
+    white: tuple[float, float, float]
     scatter: float = 1.0  # of the readings on the reference voyages, before `settle`
     # weather that the reference voyages felt as much, so that it is never the answer
     as_before: tuple[str, ...] = ()
@@ -106,23 +107,23 @@ class Case:
         return tuple(name for name in self.candidates if name in chosen)
 
     def reduced(
-        self, lines: Sequence[Linear], floors: Sequence[NoiseModel], at: np.ndarray | None = None
+        self, lines: Sequence[Linear], noise_models: Sequence[NoiseModel], at: np.ndarray | None = None
     ) -> list[Reduced]:
-        """For each floor, what these lines say of the effects alone; `at` (Q,) in prior widths: where they
-        were linearised."""
-        normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
+        """For each noise model, what these lines say of the effects alone; `at` (Q,) in prior widths: where
+        they were linearised."""
+        normals = innovate(lines, noise_models, MOST_SEGMENTS // (1 + len(noise_models) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
     def scenarios(self, names: Sequence[str], doubt: float = 0.0) -> list[NoiseModel]:
         """The noise models of these scenarios, where the effects' forms are known this roughly."""
-        floors = (
-            (self.path if w.alone else self.floor).scaled(w.share, flow=w.flow)
+        noise_models = (
+            (self.path if w.alone else self.noise_model).scaled(w.share, flow=w.flow)
             for w in map(SCENARIOS.__getitem__, names)
         )
-        return [replace(floor, doubt=doubt) for floor in floors]
+        return [replace(noise_model, doubt=doubt) for noise_model in noise_models]
 
     @cached_property
-    def told(self) -> np.ndarray:
+    def information(self) -> np.ndarray:
         """(P, P) what these voyages tell of all unknowns, where they were linearised. Per unit of each
         unknown: A, in their own units."""
         return innovate(self.lines, self.scenarios(["usual"]), MOST_SEGMENTS)[0].total()[0]
@@ -140,7 +141,7 @@ class Case:
             {u.label: i for i, u in enumerate(self.unknowns)},
         )
         others = [column[u.label] for u in effects]
-        along = directions(self.told, self.nuisance, self.unknowns, self.temper, chosen)
+        along = directions(self.information, self.nuisance, self.unknowns, self.temper, chosen)
         few = tuple(along.line(x, others) for x in lines)
         return replace(
             self,
@@ -166,28 +167,28 @@ class Case:
 
 
 def settle(case: Case) -> Case:
-    """The same case with the fast part of the floor and the readings' scatter as these voyages show them
-    (waves, a worn sensor).
+    """The same case with the fast part of the noise model and the readings' scatter as these voyages show
+    them (waves, a worn sensor).
 
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
-    white, time = case.floor.white, float(case.model.ship.scale("time"))
+    white, time = case.noise_model.white, float(case.model.ship.scale("time"))
     grid = [
         (float(level), sensor)
         for sensor in (1.0, 3.0)
         for level in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)
     ]
-    floors = [_rougher(case.floor, *factors) for factors in grid]
+    noise_models = [_rougher(case.noise_model, *factors) for factors in grid]
     uneven = tuple(_uneven(x, time) for x in case.lines)
 
     def scores(lines: Sequence[Linear]) -> list[float]:
-        return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, floors)]
+        return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, noise_models)]
 
     lines, told = case.lines, scores(case.lines)
     if any(x.track.ripple is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
         lines, told = uneven, shaky
     best = int(np.argmax(told))
-    return replace(case, lines=lines, floor=floors[best], path=_rougher(case.path, *grid[best]))
+    return replace(case, lines=lines, noise_model=noise_models[best], path=_rougher(case.path, *grid[best]))
 
 
 def _uneven(line: Linear, time: float) -> Linear:
@@ -195,8 +196,8 @@ def _uneven(line: Linear, time: float) -> Linear:
     return replace(line, shown=shown, track=replace(line.track, ripple=shown.ripple))
 
 
-def _rougher(floor: NoiseModel, white: float, sensor: float) -> NoiseModel:
-    """The floor with a fast part of at least `white` in each axis, and so many times the readings'
+def _rougher(noise_model: NoiseModel, white: float, sensor: float) -> NoiseModel:
+    """The noise model with a fast part of at least `white` in each axis, and so many times the readings'
     scatter."""
-    surge, sway, yaw = (max(white, w) for w in floor.white)
-    return replace(floor, white=(surge, sway, yaw), sensor=sensor * floor.sensor)
+    surge, sway, yaw = (max(white, w) for w in noise_model.white)
+    return replace(noise_model, white=(surge, sway, yaw), sensor=sensor * noise_model.sensor)

@@ -14,8 +14,8 @@ from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import roughly
 from twin.study.diagnosis.refine import Found, Sets
-from twin.study.diagnosis.significance import change, significance
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
+from twin.study.estimation.rarity import deviations
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
 from twin.study.reference.healthy import Healthy, compared, score
@@ -77,8 +77,8 @@ def consider(
         manoeuvre=case.excited,
         power=power(case, seen),
         structural=case.path.share,
-        noise=_by_axis(np.array(case.floor.white) / case.white),
-        scatter=case.floor.sensor / case.scatter,
+        noise=_by_axis(np.array(case.noise_model.white) / case.white),
+        scatter=case.noise_model.sensor / case.scatter,
         sea=any(at_sea(t, case.model) for t in case.tracks),
         rough=roughly(case) / nothing.expected_error_m,
         transient=strongest.log_evidence if strongest else 0.0,
@@ -97,11 +97,11 @@ def against_healthy(case: Case) -> Healthy | None:
     """How rare these voyages would be on this ship in health, by its reference voyages
     (reference/healthy.py)."""
     scores = case.model.ship.notes.get("structural", {}).get("left_out_scores", [])
-    floor = noise_model_of(case.model.ship, "beside")
-    if not scores or floor is None:
+    noise_model = noise_model_of(case.model.ship, "beside")
+    if not scores or noise_model is None:
         return None
     causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
-    own = [score(case.reduced([line], [floor])[0], causes, case.weather) for line in case.lines]
+    own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in case.lines]
     return compared(own, scores)
 
 
@@ -209,3 +209,21 @@ def _cause(
         change=change(case, own, name) if own else 0.0,
         reached=reached(case, own, name, asked) if own and asked else None,
     )
+
+
+def significance(case: Case, found: Found, name: str) -> float:
+    """How far all numbers of this effect together are from none, as standard deviations of one (a compass
+    bias, and what of it turned the velocity, are each uncertain, and their difference clear)."""
+    own = np.array([i for i, u in enumerate(case.effects) if u.owner == name])
+    return deviations(found.posterior.z[own], found.posterior.covariance[np.ix_(own, own)])
+
+
+def change(case: Case, found: Found, name: str) -> float:
+    """How far the clearest number of an effect is from what the ship's file has, over what its form may be
+    off in another manoeuvre (a gear that was found as a dead time and half a second of easing is the same
+    gear with less of the one and more of the other); 0 where the file has none."""
+    if name not in case.present:
+        return 0.0
+    form = {p.name: p.form for p in case.catalogue[name].params()}
+    moved = ((u, u.sd * z) for u, z in zip(case.effects, found.posterior.z, strict=True) if u.owner == name)
+    return max(abs(by) / max(form[u.name] * abs(u.centre), 1e-9 * u.sd) for u, by in moved)

@@ -37,8 +37,8 @@ from twin.study.estimation.start import waves_on
 from twin.study.reference.healthy import Healthy
 
 SCHEMA_VERSION = 1
-SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
-LEAST = 0.05
+SHOWN = 8  # candidates in the answer: all that are at least LEAST_PROBABILITY likely, and no more than this
+LEAST_PROBABILITY = 0.05
 SOME = 0.5  # probability from which a kind of weather is told
 
 
@@ -73,7 +73,7 @@ def diagnose(
     facts, decision = considered.facts, decide(considered.facts)
     nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing)
     p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
-    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST][:SHOWN]
+    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST_PROBABILITY][:SHOWN]
     likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
     progress("predicting held-out parts")
     candidates = [_candidate(case, weighed, found, considered, decision, name, p[name]) for name in likely]
@@ -105,7 +105,7 @@ def diagnose(
             "not_named": decision.not_named,
             "lasting": [n for n in decision.missing if case.catalogue[n].lasts()],
         },
-        "moments": [m.told(case.model) for m in considered.pushes],
+        "moments": [m.as_json(case.model) for m in considered.pushes],
         "path": {
             "horizon_s": horizon_s(case.tracks[0], case.model),
             "error_without": base.open_loop_error_m,
@@ -131,15 +131,15 @@ def diagnose(
             if not can and n not in [*decision.missing, *case.as_before, *case.present]
         ],
         "floor": {
-            "share_surge_sway_yaw": case.floor.share,
-            "sensor_factor": case.floor.sensor,
+            "share_surge_sway_yaw": case.noise_model.share,
+            "sensor_factor": case.noise_model.sensor,
             "temper": case.temper,
         },
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
         "references": [v.name for v in references],
         "data_checks": of_voyages([*voyages, *references], ship),
-        "facts": facts.told(),
+        "facts": facts.as_json(),
     }
     result["sentence"] = decision.sentence(result)
     return Diagnosed(plain(result), case, found)
@@ -217,7 +217,7 @@ def _weather(
     )
     out = {"effect": name, "belongs_to": case.catalogue[name].belongs_to, "probability": capped(probability)}
     if best is None:
-        flow = SCENARIOS[weighed[0].scenario].flow * case.floor.flow * float(case.model.ship.U_0)
+        flow = SCENARIOS[weighed[0].scenario].flow * case.noise_model.flow * float(case.model.ship.U_0)
         return out | {
             "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
             "typical_force": None,

@@ -78,7 +78,7 @@ class Facts:
     # ship file lacks their scores [1]
     reached: float | None = None
 
-    def told(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, Any]:
         """As JSON has them."""
         return asdict(self)
 

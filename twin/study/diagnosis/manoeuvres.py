@@ -152,15 +152,15 @@ def sail(case: Case, model: Model, manoeuvre: Manoeuvre) -> Track:
     state = (0.0, 0.0, 0.0, speed, 0.0, 0.0)
     helm, L = HelmOrder(), float(model.ship.L_pp)
     states, orders = np.full((steps, 6), np.nan), np.zeros((steps, 2))
-    parts_told: dict[str, np.ndarray] = {}
+    actuator_rows: dict[str, np.ndarray] = {}
     for k in range(steps):
         if not np.isfinite(state).all():
             break
         delta, power = manoeuvre.order(helm)
         states[k], orders[k] = state, (delta, power * usual)
         given = inputs(model, manoeuvre, helm, delta, power * usual)
-        for name, value in given.get("told", {}).items():
-            parts_told.setdefault(name, np.zeros(steps))[k] = value
+        for name, value in given.get("orders", {}).items():
+            actuator_rows.setdefault(name, np.zeros(steps))[k] = value
         state = model.step(state, Situation(**given, t=k * h, **weather), h)
         speed = max(abs(state[3]), 1e-3)
         helm.lengths, helm.turned, helm.rate = helm.lengths + speed * h / L, state[2], state[5] * L / speed
@@ -179,7 +179,7 @@ def sail(case: Case, model: Model, manoeuvre: Manoeuvre) -> Track:
         measured,
         like.sd,
         np.ones(steps, bool),
-        told=parts_told if parts else None,
+        orders=actuator_rows if parts else None,
     )
 
 
@@ -191,14 +191,14 @@ def inputs(model: Model, manoeuvre: Manoeuvre, helm: HelmOrder, delta: float, po
     share = manoeuvre.alone or (lambda lengths, which, count: 1.0)
     alone = {name: share(helm.lengths, i, len(drives)) for i, name in enumerate(drives)}
     side = manoeuvre.side(helm.lengths) if manoeuvre.side else 0.0
-    return {"told": actuator_orders(model.ship, delta, power, side, alone)}
+    return {"orders": actuator_orders(model.ship, delta, power, side, alone)}
 
 
 def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
     """Log odds that this track would be expected to give for `first` (at z (Q,) prior widths) against
     `second`."""
     here, _ = case.model.without_inputs(track.missing())
-    A = case.reduced([linearise(track, here, case.unknowns, case.catalogue)], [case.floor])[0]
+    A = case.reduced([linearise(track, here, case.unknowns, case.catalogue)], [case.noise_model])[0]
     a, b = A.rows((first,)), A.rows((second,))
     size = z[a]
     alone = float(size @ A.A[np.ix_(a, a)] @ size)

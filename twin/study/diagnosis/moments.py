@@ -41,7 +41,7 @@ class Moment:
     log_evidence: float
     push: np.ndarray
 
-    def told(self, model: Model) -> dict[str, Any]:
+    def as_json(self, model: Model) -> dict[str, Any]:
         """With the push as a force on this ship [N, N, N m]."""
         surge, sway, yaw = (standard(model) * self.push).tolist()
         X, Y, N = core.force_for(surge, sway, yaw, model.c)
@@ -71,13 +71,13 @@ def moments(case: Case, found: Found) -> list[Moment]:
 def stretches(case: Case, found: Found) -> list[Moment]:
     """Every stretch of each length, with what it says."""
     lines, at = standing(case, found)
-    floor = case.scenarios([plain(found.hypothesis).scenario], found.doubt)[0]
-    normal = innovate(lines, [floor], MOST_SEGMENTS)[0]
+    noise_model = case.scenarios([plain(found.hypothesis).scenario], found.doubt)[0]
+    normal = innovate(lines, [noise_model], MOST_SEGMENTS)[0]
     theta = likeliest(
         normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects
     )
     known = [_in_one(line, theta) for line in lines]
-    return [m for lengths in LENGTHS for m in _tried(case, known, floor, lengths)]
+    return [m for lengths in LENGTHS for m in _tried(case, known, noise_model, lengths)]
 
 
 def _in_one(line: Linear, theta: np.ndarray) -> Linear:
@@ -86,7 +86,7 @@ def _in_one(line: Linear, theta: np.ndarray) -> Linear:
     return replace(line, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
 
 
-def _tried(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: float) -> list[Moment]:
+def _tried(case: Case, lines: Sequence[Linear], noise_model: NoiseModel, lengths: float) -> list[Moment]:
     time = float(case.model.ship.scale("time"))
     where = segments([line.track for line in lines], time, MOST_SEGMENTS)
     steps = [max(4, round(lengths * time / line.track.h)) for line in lines]
@@ -94,7 +94,7 @@ def _tried(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: floa
     pushed = [
         _pushed(case, x, [(a, b) for j, a, b in where if j == i], steps[i], most) for i, x in enumerate(lines)
     ]
-    normal, out = innovate(pushed, [floor], MOST_SEGMENTS)[0], []
+    normal, out = innovate(pushed, [noise_model], MOST_SEGMENTS)[0], []
     for (i, a, b), A, pull in zip(where, normal.A / case.temper, normal.b / case.temper, strict=True):
         for k in range(most):
             first, own = a + k * (steps[i] // 2), slice(3 * k + 1, 3 * k + 4)

@@ -93,8 +93,8 @@ def _nearer(c: Cause) -> bool:
 
 
 def _too_small(f: Facts, c: Cause) -> bool:
-    """Whether a single effect cannot show in where it went, for it is led there with it and without: then
-    the readings decide."""
+    """Whether a single effect cannot show in where it went, for the model ends there with it and without:
+    then the readings decide."""
     alone = f.explanation == f.likeliest and [x.effect for x in f.causes if x.in_explanation] == [c.effect]
     return (
         alone

@@ -1,5 +1,5 @@
-"""Whether a hypothesis would also have led the ship where it went: a second test beside the readings one
-step ahead.
+"""Whether a hypothesis would also have brought the model where the ship went: a second test beside the
+readings one step ahead.
 
 One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step,
 may then decide between two causes that explain the voyages nearly alike. Run free from measured states over
@@ -27,7 +27,7 @@ HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are pre
 # one mends the other
 COMPLEXITY = 10.0
 # windows that count: what the core misses is the same in all of them, and more of the same tells no more
-MOST = 40.0
+MAX_WINDOWS = 40.0
 FORM = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
 DEGRADED = 0.05  # share by which two effects lead it farther off than one of them, so that the other is none
@@ -40,11 +40,11 @@ class OpenLoopCheck:
     made of it."""
 
     found: Mapping[Sets, Found]  # with `open_loop_error_m`; "nothing" is among them
-    floor: Mapping[str, float]  # [m], by world
+    expected_m: Mapping[str, float]  # [m], by noise scenario
     levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along it
-    windows: float  # that do not overlap, and no more than MOST
+    windows: float  # that do not overlap, and no more than MAX_WINDOWS
     irregular: frozenset[str]  # effects that come and go
-    weather: frozenset[str]  # effects that are no cause, and no luxury
+    weather: frozenset[str]  # effects that are no cause, and bear no penalty
 
     def log_probability(self, h: Hypothesis) -> float:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that
@@ -53,13 +53,15 @@ class OpenLoopCheck:
             self.found.get(h.effects),
             max(m for s, m in self.levered.items() if set(s) <= set(h.effects)),
         )
-        floor = _expected_error(h, self.floor, self.found[()].open_loop_error_m, self.irregular, levered)
+        expected_m = _expected_error(
+            h, self.expected_m, self.found[()].open_loop_error_m, self.irregular, levered
+        )
         error = (
             own.open_loop_error_m
             if own
             else min(f.open_loop_error_m for s, f in self.found.items() if set(s) <= set(h.effects))
         )
-        return self._path(error, floor)
+        return self._path(error, expected_m)
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
@@ -95,10 +97,10 @@ class OpenLoopCheck:
             and min(parts, default=np.inf) < (1.0 - DEGRADED) * own.open_loop_error_m
         )
 
-    def _path(self, error: float, floor: float) -> float:
-        """Log probability of ending so far off where the floor is all that a true hypothesis would leave: two
-        directions, a normal error of unknown size."""
-        return -2.0 * self.windows * float(np.log(max(error, floor) / floor))
+    def _path(self, error: float, expected_m: float) -> float:
+        """Log probability of ending so far off where the expected error is all that a true hypothesis would
+        leave: two directions, a normal error of unknown size."""
+        return -2.0 * self.windows * float(np.log(max(error, expected_m) / expected_m))
 
 
 def open_loop_check(
@@ -118,8 +120,8 @@ def open_loop_check(
         for s, f in found.items()
         if not case.causes(s) or likely[s] > best - REACH
     }
-    floor = before.floor if before else _expected_errors(case)
-    # the floor has the others
+    expected_m = before.expected_m if before else _expected_errors(case)
+    # the expected errors have the others
     irregular = frozenset(
         name for name in case.candidates if case.catalogue[name].irregular and name not in case.present
     )
@@ -130,18 +132,19 @@ def open_loop_check(
         for s in off
     }
     ends = {
-        s: _expected_error(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off
+        s: _expected_error(plain(found[s].hypothesis), expected_m, off[()], irregular, levered[s])
+        for s in off
     }
     asked = {s: replace(found[s], open_loop_error_m=m, expected_error_m=ends[s]) for s, m in off.items()}
-    windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
-    return OpenLoopCheck(asked, floor, levered, windows, irregular, frozenset(case.weather))
+    windows = min(MAX_WINDOWS, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
+    return OpenLoopCheck(asked, expected_m, levered, windows, irregular, frozenset(case.weather))
 
 
 def _expected_errors(case: Case) -> dict[str, float]:
-    """[m] by world: what noise and structure alone would make of the path."""
+    """[m] by noise scenario: what noise and structure alone would make of the path."""
     steps = {
-        name: _usual(case, floor)
-        for name, floor in zip(SCENARIOS, case.scenarios(list(SCENARIOS)), strict=True)
+        name: _usual(case, noise_model)
+        for name, noise_model in zip(SCENARIOS, case.scenarios(list(SCENARIOS)), strict=True)
     }
     # what is run free is a core alone, and no better than it was when nothing was wrong
     least = max(steps["coarse"], measured_error_m(case))
@@ -150,7 +153,7 @@ def _expected_errors(case: Case) -> dict[str, float]:
 
 
 def plain(h: Hypothesis) -> Hypothesis:
-    """The same in a world that is no rougher than on the reference voyages."""
+    """The same in a noise scenario that is no rougher than on the reference voyages."""
     return (
         h
         if SCENARIOS[h.scenario].plain
@@ -164,12 +167,16 @@ def plain(h: Hypothesis) -> Hypothesis:
 
 
 def _expected_error(
-    h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str], levered_m: float
+    h: Hypothesis,
+    expected_m: Mapping[str, float],
+    nothing_m: float,
+    irregular: frozenset[str],
+    levered_m: float,
 ) -> float:
     """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does
     is left; more of one that comes and goes, or whose side force may attack elsewhere."""
     left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM if h.effects else 0.0
-    return float(np.hypot.reduce([floor[h.scenario], left * nothing_m, levered_m]))
+    return float(np.hypot.reduce([expected_m[h.scenario], left * nothing_m, levered_m]))
 
 
 def horizon_s(track: Track, model: Model) -> float:
@@ -216,13 +223,16 @@ def held_out_error(case: Case, found: Found) -> float:
     return total / max(count, 1)
 
 
-def _usual(case: Case, floor: NoiseModel) -> float:
-    """Mean position error [m] of a model that is as good as this floor."""
+def _usual(case: Case, noise_model: NoiseModel) -> float:
+    """Mean position error [m] of a model that is as good as this noise model says."""
     errors = []
     for track in case.tracks:
         model = case.model.without_inputs(track.missing())[0]
         errors.append(
-            _errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE)
+            _errors(
+                predict(track, model, [horizon_s(track, case.model)], leads=1, noise_model=noise_model),
+                STRUCTURE,
+            )
         )
     return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
 

@@ -30,7 +30,7 @@ IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input show
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
 BEHIND = 60.0  # log odds behind the likeliest scenario from which a restless one is out of the question
-LEAST = 0.2  # of a step that an iteration tries: of 345 iterations four got higher by less
+LEAST_STEP_SHARE = 0.2  # of a step that an iteration tries: of 345 iterations four got higher by less
 STANDS = 0.05  # prior widths that a step may still move
 
 
@@ -202,7 +202,7 @@ def newton(
             merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, own).z
         else:
             share *= 0.5
-        if share < LEAST or share * np.max(np.abs(aim - best)[mine]) < STANDS:
+        if share < LEAST_STEP_SHARE or share * np.max(np.abs(aim - best)[mine]) < STANDS:
             break
     return here, best, lines
 

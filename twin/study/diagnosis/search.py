@@ -24,7 +24,7 @@ from twin.study.diagnosis.steady import steady
 from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_sets
 
-MOST = 3  # causes at once
+MAX_CAUSES = 3  # causes at once
 AT_FIRST = 2  # of which so many in the linear pass; one more only beside what was relinearised
 KINDS = 3  # of weather at once in the linear pass
 DAYS = 2  # sets of weather beside which every pair of causes is asked
@@ -243,7 +243,7 @@ class Hypotheses:
         # where a part of the set was found to stand
         about = start.reduced if part and start.reduced else self.scenarios[scenario]
         z = boxed(about, chosen, posterior(about, chosen)).z
-        wider = self.case.candidates if len(self.case.causes(chosen)) < MOST else self.case.weather
+        wider = self.case.candidates if len(self.case.causes(chosen)) < MAX_CAUSES else self.case.weather
         self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, start)
         if self.hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}

@@ -1,5 +1,5 @@
-"""From weighed hypotheses to an answer: missing, nothing missing, unknown or undecided, with numbers an
-engineer can check."""
+"""What weighed hypotheses say of each effect: how probable it is, what stands for it as well, its numbers and
+force. Nothing is decided here (decision.py)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +13,6 @@ from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.criteria import CERTAIN, CLEAR, LOST, SURE
 from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
-from twin.study.diagnosis.without import without
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
@@ -197,3 +196,9 @@ def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
         total, count = total + (force**2).sum(0), count + len(track)
     X, Y, N = np.sqrt(total / max(count, 1))
     return {"X_N": float(X), "Y_N": float(Y), "N_Nm": float(N)}
+
+
+def without(model: Model, before: Model, name: str) -> Model:
+    """The model with one effect taken out, or put back to what it was `before`."""
+    was = (e for e in before.effects if type(e).__name__ == name)
+    return Model(model.ship, (*(e for e in model.effects if type(e).__name__ != name), *was))

@@ -102,7 +102,7 @@ def _learnable(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
         if f.name not in FIXED and f.metadata["sd"] and f.name not in off:
             yield f.name, float(getattr(ship.derivatives, f.name)), f.metadata
     for a in ship.actuators:
-        for name in a.told():
+        for name in a.estimated():
             yield f"{a.name}.{name}", float(getattr(a, name)), NUMBERS[name].metadata
 
 

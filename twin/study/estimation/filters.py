@@ -1,4 +1,5 @@
-"""Many Kalman filters side by side, each with its tangents: every segment of every track, under every floor.
+"""Many Kalman filters side by side, each with its tangents: every segment of every track, under every noise
+model.
 
 The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py, and in a sea that was seen to work
 the waves' accelerations with what carries them on. X holds its mean and how that depends on each unknown, C
@@ -42,7 +43,7 @@ class Stretches:
 
 @dataclass(frozen=True)
 class NoiseVariances:
-    """Of every floor (W) and every segment: variances."""
+    """Of every noise model (W) and every segment: variances."""
 
     reading: np.ndarray  # (T, W, S, 8)
     new: np.ndarray  # (T, W, S, 11) of each of the ship's states, in one step
@@ -55,27 +56,29 @@ class RunsAway(DataError, np.linalg.LinAlgError):
 
 
 class Filters:
-    """A filter for every floor and segment, all at the same step; begun with the covariance C (W, S, n, n), n
-    being 11, or 23 at sea."""
+    """A filter for every noise model and segment, all at the same step; begun with the covariance C (W, S,
+    n, n), n being 11, or 23 at sea."""
 
-    def __init__(self, told: Stretches, noise: NoiseVariances, C: np.ndarray) -> None:
-        self.told, self.noise, self.C = told, noise, C
-        self.X = np.zeros((*C.shape[:3], told.shown.shape[-1]), LIGHT)
-        self.H, self.unread = told.H.astype(LIGHT), np.where(told.here[:, None], noise.reading, 1.0)
-        self.turned = 1 + np.array(list(told.turns), int)
-        if told.turns:  # of all columns at once
-            self.turns = np.concatenate(list(told.turns.values()), axis=-2)
-        self.on = _On(told.F, told.swing)
-        self.light = _On(told.F.astype(LIGHT), None if told.swing is None else told.swing.astype(LIGHT))
+    def __init__(self, stretches: Stretches, noise: NoiseVariances, C: np.ndarray) -> None:
+        self.stretches, self.noise, self.C = stretches, noise, C
+        self.X = np.zeros((*C.shape[:3], stretches.shown.shape[-1]), LIGHT)
+        self.H, self.unread = stretches.H.astype(LIGHT), np.where(stretches.here[:, None], noise.reading, 1.0)
+        self.turned = 1 + np.array(list(stretches.turns), int)
+        if stretches.turns:  # of all columns at once
+            self.turns = np.concatenate(list(stretches.turns.values()), axis=-2)
+        self.on = _On(stretches.F, stretches.swing)
+        self.light = _On(
+            stretches.F.astype(LIGHT), None if stretches.swing is None else stretches.swing.astype(LIGHT)
+        )
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
         """By the readings of step k; gives the innovations with their tangents (W, S, 8, 1 + P), in
         standard deviations, and the diagonal of the root of their covariance (W, S, 8). RunsAway where
         their covariance is none."""
-        told, H = self.told, self.told.H[k]
-        E = told.shown[k] - self.H[k] @ self.X[..., SHIP, :]
+        stretches, H = self.stretches, self.stretches.H[k]
+        E = stretches.shown[k] - self.H[k] @ self.X[..., SHIP, :]
         if self.turned.size:
-            more = self.turns[k] @ (E[..., :1] - told.shown[k][..., :1])
+            more = self.turns[k] @ (E[..., :1] - stretches.shown[k][..., :1])
             E[..., self.turned] += more.reshape(*E.shape[:2], -1, E.shape[2]).swapaxes(-1, -2)
         HC = H @ self.C[..., SHIP, :]
         S = HC[..., SHIP] @ H.swapaxes(-1, -2)
@@ -92,14 +95,14 @@ class Filters:
 
     def advance(self, k: int) -> None:
         """From step k to the next: by the linear ship, what the unknowns push, and noise."""
-        told = self.told
+        stretches = self.stretches
         bent = (
             None
-            if told.bends is None
-            else told.spread[k] @ np.einsum("kaip,wki->wkap", told.bends[k], self.X[..., BENDS, 0])
+            if stretches.bends is None
+            else stretches.spread[k] @ np.einsum("kaip,wki->wkap", stretches.bends[k], self.X[..., BENDS, 0])
         )
         self.X = self.light(k, self.X)
-        self.X[..., MOTION, :] += told.pushed[k]
+        self.X[..., MOTION, :] += stretches.pushed[k]
         if bent is not None:
             self.X[..., MOTION, 1:] += bent
         # No reading corrects what rounding makes asymmetric of a covariance, and it would grow as an unstable
@@ -111,7 +114,7 @@ class Filters:
             self.C[..., WAVES, WAVES] += self.noise.waves[k]
 
     def _runs_away(self, k: int) -> RunsAway:
-        growth = np.abs(np.linalg.eigvals(self.told.F[max(k - 1, 0)])).max()
+        growth = np.abs(np.linalg.eigvals(self.stretches.F[max(k - 1, 0)])).max()
         return RunsAway(
             f"the fitted model runs away: what it is off by grows up to {num(growth, 3)} times in a time "
             "step, so nothing can be told from these voyages. Check mass, yaw inertia and actuators in the "

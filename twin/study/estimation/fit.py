@@ -59,7 +59,7 @@ def fit(
     model: Model,
     unknowns: Sequence[Unknown],
     catalogue: Catalogue,
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     *,
     temper: float = 1.0,
     smooth: bool = False,
@@ -74,7 +74,7 @@ def fit(
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
         filter follows is not found yet,
     and errs by more than they do."""
-    problem = _Problem(tracks, model, tuple(unknowns), catalogue, floor, temper, smooth)
+    problem = _Problem(tracks, model, tuple(unknowns), catalogue, noise_model, temper, smooth)
     here, far = problem.at(problem.start()), NEAR
     for _ in range(STEPS):
         z, far = problem.better(here, far)
@@ -134,7 +134,7 @@ class _Problem:
     model: Model
     unknowns: tuple[Unknown, ...]
     catalogue: Catalogue
-    floor: NoiseModel
+    noise_model: NoiseModel
     temper: float
     smooth: bool
 
@@ -170,7 +170,7 @@ class _Problem:
     def at(self, z: np.ndarray) -> _Here:
         """Linearised there, with what every unknown does."""
         lines = self._linearised(z, self.unknowns, exact=True)
-        normal = innovate(lines, [self.floor])[0]
+        normal = innovate(lines, [self.noise_model])[0]
         A, b, _ = normal.total()
         lines = tuple(replace(line, bends=None) for line in lines)  # large, and needed no more
         H = A / self.temper * np.outer(self.sd, self.sd) + np.eye(z.size)
@@ -198,7 +198,7 @@ class _Problem:
     def _cost(self, z: np.ndarray) -> float:
         lines = self._linearised(z, [u for u in self.unknowns if u.owner == LATE])
         try:
-            normal = innovate(lines, [self.floor])[0]
+            normal = innovate(lines, [self.noise_model])[0]
         except np.linalg.LinAlgError:  # a model that runs away between two readings: a step too far
             return np.inf
         return _cost(z, normal, self.temper)

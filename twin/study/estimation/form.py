@@ -22,7 +22,7 @@ from twin.study.estimation.respond import steered
 from twin.study.track.track import Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
-APART = 0.2  # of U_0: of the speeds about which resistance may be otherwise
+SPEED_SPACING = 0.2  # of U_0: of the speeds about which resistance may be otherwise
 ABOUT = (0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
 ROLLED = 0.15  # of L/U_0: window over which the measured heel is smoothed before its rates are taken
 
@@ -45,7 +45,7 @@ Term = Callable[[Along], np.ndarray]
 def _about(speed: float) -> Term:
     """Resistance about one speed, falling to none at the next: waves, wake and friction give a curve with
     humps that no square of the speed has."""
-    return lambda a: np.sign(a.ahead) * np.maximum(0.0, 1.0 - np.abs(np.abs(a.ahead) - speed) / APART)
+    return lambda a: np.sign(a.ahead) * np.maximum(0.0, 1.0 - np.abs(np.abs(a.ahead) - speed) / SPEED_SPACING)
 
 
 HULL: dict[str, tuple[str, float, Term]] = {  # name: axis, prior width, times 1/2 rho L T U^2 (and L)
@@ -97,8 +97,8 @@ def _rudders(track: Track, model: Model) -> core.Tau:
     for a in model.loaded.actuators:
         if a.A_R is not None and "angle" in a.keys:
             c = a.coefficients(model.loaded)
-            T = push(a, now["told"], c.wake_share * u, model.loaded)
-            x, y, n = core.rudder(u, zero, zero, now["told"][a.keys["angle"]] + a.trim, T, c)
+            T = push(a, now["orders"], c.wake_share * u, model.loaded)
+            x, y, n = core.rudder(u, zero, zero, now["orders"][a.keys["angle"]] + a.trim, T, c)
             X, Y, N = X + x, Y + y, N + n - a.y * x
     return X, Y, N
 

@@ -148,7 +148,7 @@ def _thinned(t: Track) -> Track:
         weather={k: w[rows] for k, w in t.weather.items()},
         measured=t.measured[rows],
         whole=t.whole[rows],
-        told=None if t.told is None else {k: x[rows] for k, x in t.told.items()},
+        orders=None if t.orders is None else {k: x[rows] for k, x in t.orders.items()},
     )
 
 

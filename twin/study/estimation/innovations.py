@@ -45,7 +45,7 @@ from twin.study.track.track import Track
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """What a correct model of this kind still leaves unexplained on this ship: the structural floor.
+    """What a correct model of this kind still leaves unexplained on this ship: the structural noise model.
 
     `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller
         cause at that moment,
@@ -77,19 +77,21 @@ class NoiseModel:
         )
 
 
-def innovate(lines: Sequence[Linear], floors: Sequence[NoiseModel], most: int | None = None) -> list[Normal]:
-    """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the
-    normal equations for each floor."""
+def innovate(
+    lines: Sequence[Linear], noise_models: Sequence[NoiseModel], most: int | None = None
+) -> list[Normal]:
+    """Filter every segment of every track (or an even choice of `most`), under every noise model, side by
+    side; the normal equations for each noise model."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
-    told, noise = _stretches(lines, where), _noise(lines, floors, where)
+    stretches, noise = _stretches(lines, where), _noise(lines, noise_models, where)
     filters, sums = (
-        Filters(told, noise, _start(lines, floors, where)),
-        Sums(len(floors), len(where), told.shown.shape[-1] - 1),
+        Filters(stretches, noise, _start(lines, noise_models, where)),
+        Sums(len(noise_models), len(where), stretches.shown.shape[-1] - 1),
     )
-    for k in range(len(told.here)):
+    for k in range(len(stretches.here)):
         sums.add(*filters.correct(k))
         filters.advance(k)
-    return sums.normals(told.here, tuple(where))
+    return sums.normals(stretches.here, tuple(where))
 
 
 def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
@@ -128,20 +130,20 @@ def _in_waves(lines: Sequence[Linear]) -> bool:
     return any(line.track.swell is not None for line in lines)
 
 
-def _noise(lines: Sequence[Linear], floors: Sequence[NoiseModel], where: Where) -> NoiseVariances:
-    """Every floor in turn, over all segments."""
+def _noise(lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: Where) -> NoiseVariances:
+    """Every noise model in turn, over all segments."""
     ship, h = lines[0].model.ship, _steps(lines, where)
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
     new_b, new_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
     new = []
-    for floor in floors:
-        slow = new_b[:, None] * abreast([_slow(x, floor) for x in lines], where)
+    for noise_model in noise_models:
+        slow = new_b[:, None] * abreast([_slow(x, noise_model) for x in lines], where)
         out = np.zeros((*slow.shape[:2], STATES))
-        out[..., PLACE] = (floor.wander**2 * h)[:, None]
-        out[..., SPEEDS] = (np.array(floor.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
-        out[..., SLOW], out[..., FLOW] = slow, (new_c * (floor.flow * speed) ** 2)[:, None]
+        out[..., PLACE] = (noise_model.wander**2 * h)[:, None]
+        out[..., SPEEDS] = (np.array(noise_model.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
+        out[..., SLOW], out[..., FLOW] = slow, (new_c * (noise_model.flow * speed) ** 2)[:, None]
         new.append(out)
-    reading = [abreast([_reading(x.track, f) for x in lines], where) for f in floors]
+    reading = [abreast([_reading(x.track, f) for x in lines], where) for f in noise_models]
     swell = abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
     return NoiseVariances(np.stack(reading, axis=1), np.stack(new, axis=1), swell)
 
@@ -161,35 +163,35 @@ def _spread(line: Linear) -> np.ndarray:
     return out.astype(LIGHT)
 
 
-def _slow(line: Linear, floor: NoiseModel) -> np.ndarray:
+def _slow(line: Linear, noise_model: NoiseModel) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
-    calm = floor.calm * standard(line.model)
+    calm = noise_model.calm * standard(line.model)
     return (
-        (np.array(floor.share) ** 2) * (line.busy**2 + calm**2)
-        + np.square(floor.doubt * line.doubted)
+        (np.array(noise_model.share) ** 2) * (line.busy**2 + calm**2)
+        + np.square(noise_model.doubt * line.doubted)
         + np.square(line.slack)
     )
 
 
-def _reading(track: Track, floor: NoiseModel) -> np.ndarray:
+def _reading(track: Track, noise_model: NoiseModel) -> np.ndarray:
     """(N, 8) variance of each reading."""
     return np.square(
-        floor.sensor
+        noise_model.sensor
         * np.broadcast_to(track.sd if track.ripple is None else track.sd * track.ripple, (len(track), 8))
     )
 
 
-def _start(lines: Sequence[Linear], floors: Sequence[NoiseModel], where: Where) -> np.ndarray:
+def _start(lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: Where) -> np.ndarray:
     """(W, S, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as
     they usually are."""
     ship, first = lines[0].model.ship, [(i, a, a + 1) for i, a, _ in where]
     L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
-    diagonal = np.zeros((len(floors), len(where), STATES))
+    diagonal = np.zeros((len(noise_models), len(where), STATES))
     diagonal[..., MOTION] = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
-    for usual, floor in zip(diagonal, floors, strict=True):
+    for usual, noise_model in zip(diagonal, noise_models, strict=True):
         usual[:, SLOW], usual[:, FLOW] = (
-            abreast([_slow(x, floor) for x in lines], first)[0],
-            (floor.flow * U) ** 2,
+            abreast([_slow(x, noise_model) for x in lines], first)[0],
+            (noise_model.flow * U) ** 2,
         )
     C = np.eye(STATES) * diagonal[..., None, :]
     if not _in_waves(lines):

@@ -40,7 +40,8 @@ MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths 
 
 @dataclass(frozen=True)
 class Linear:
-    """One track, linearised about its smooth motion and a model: all that the filter needs, for any floor."""
+    """One track, linearised about its smooth motion and a model: all that the filter needs, for any noise
+    model."""
 
     track: Track  # with the model's faults of instruments taken out of the motion
     shown: Track  # with them in it
@@ -76,10 +77,10 @@ def linearise(
     smooth: bool = False,
     exact: bool = False,
 ) -> Linear:
-    """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model
-    already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these are
-    judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where the
-    filter believes it to be."""
+    """Everything about one track that does not depend on the noise model (`at`: values of unknowns that the
+    model already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these
+    are judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where
+    the filter believes it to be."""
     shown, track = track, undone(track, model)
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()

@@ -42,7 +42,7 @@ class Normal:
 
 
 class Sums:
-    """Running sums of whitened innovations by floor and segment: W and S of them, with P unknowns."""
+    """Running sums of whitened innovations by noise model and segment: W and S of them, with P unknowns."""
 
     def __init__(self, W: int, S: int, P: int) -> None:
         self.M, self.logdet, self.energy = (
@@ -68,7 +68,7 @@ class Sums:
             self.held = []
 
     def normals(self, here: np.ndarray, where: tuple[tuple[int, int, int], ...]) -> list[Normal]:
-        """One for each floor; `here` (T, S, 8): which readings there were. In units of the unknowns."""
+        """One for each noise model; `here` (T, S, 8): which readings there were. In units of the unknowns."""
         self._fold()
         count = here.sum((0, 2)).astype(float)
         told = zip(self.M, self.logdet, self.energy, strict=True)

@@ -111,7 +111,7 @@ def _run(t: Track, model: Model, starts: np.ndarray, steps: int, nudges: np.ndar
         rows = first + k
         inputs = {name: x[rows] for name, x in t.weather.items()} | {
             "delta": controls["delta"][rows],
-            "told": None if t.told is None else {k: x[rows] for k, x in controls["told"].items()},
+            "orders": None if t.orders is None else {k: x[rows] for k, x in controls["orders"].items()},
             "n": t.n[rows],
             "t": t.t[rows],
         }

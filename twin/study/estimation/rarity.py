@@ -3,7 +3,9 @@
 import numpy as np
 from scipy.special import chdtrc, ndtri
 
-LEAST = 1e-300  # probability below which the tail of a normal distribution is taken for its exponent alone
+TAIL_PROBABILITY = (
+    1e-300  # probability below which the tail of a normal distribution is taken for its exponent alone
+)
 
 
 def deviations(z: np.ndarray, covariance: np.ndarray) -> float:
@@ -17,4 +19,4 @@ def deviations(z: np.ndarray, covariance: np.ndarray) -> float:
     """
     q = float(z @ np.linalg.solve(covariance, z))
     tail = float(chdtrc(z.size, q))
-    return float(-ndtri(0.5 * tail)) if tail > LEAST else float(np.sqrt(q))
+    return float(-ndtri(0.5 * tail)) if tail > TAIL_PROBABILITY else float(np.sqrt(q))

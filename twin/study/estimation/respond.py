@@ -111,14 +111,14 @@ def lagged(track: Track, model: Model) -> np.ndarray:
 
 def steered(track: Track, model: Model) -> dict[str, Any]:
     """Rudder and actuators as they truly stand, as fields of Situation."""
-    delta, told = _lagged(track, model)
-    return {"delta": delta} if told is None else {"delta": delta, "told": told}
+    delta, orders = _lagged(track, model)
+    return {"delta": delta} if orders is None else {"delta": delta, "orders": orders}
 
 
 def keep_steered(track: Track, model: Model, of: Track, steps: np.ndarray) -> None:
     """Lets a choice of steps of a track remember what lags made of all of them. `steps` (K,): index."""
-    delta, told = _lagged(of, model)
-    some = None if told is None else {k: x[steps] for k, x in told.items()}
+    delta, orders = _lagged(of, model)
+    some = None if orders is None else {k: x[steps] for k, x in orders.items()}
     track.rudder[model.lags] = (delta[steps], some)
 
 
@@ -128,12 +128,12 @@ def _lagged(track: Track, model: Model) -> tuple[np.ndarray, Mapping[str, np.nda
         if len(track.rudder) >= GEARS:
             track.rudder.clear()
         of_rudder = [g for g in gears if not getattr(g, "actuator", "")]
-        told = track.told
-        for gear in gears if told else ():
-            assert told is not None
+        orders = track.orders
+        for gear in gears if orders else ():
+            assert orders is not None
             name = f"{getattr(gear, 'actuator', '')}."
-            told = {k: _behind(track, [gear], x) if k.startswith(name) else x for k, x in told.items()}
-        track.rudder[gears] = (_behind(track, of_rudder, track.delta), told)
+            orders = {k: _behind(track, [gear], x) if k.startswith(name) else x for k, x in orders.items()}
+        track.rudder[gears] = (_behind(track, of_rudder, track.delta), orders)
     return track.rudder[gears]  # type: ignore[no-any-return]
 
 
@@ -155,9 +155,9 @@ def _plain(gear: Lag) -> Lag:
 
 def advance(track: Track, model: Model) -> np.ndarray:
     """(N, 6) where the model would be one grid step on, from each point of the smooth motion."""
-    delta, told = _lagged(track, model)
-    half = None if told is None else {k: _between(x) for k, x in told.items()}
-    s = track.situation(delta=_between(delta), n=_between(track.n), told=half)
+    delta, orders = _lagged(track, model)
+    half = None if orders is None else {k: _between(x) for k, x in orders.items()}
+    s = track.situation(delta=_between(delta), n=_between(track.n), orders=half)
     state = tuple(track.state.T)
     return np.column_stack(model.step(state, s, track.h))
 

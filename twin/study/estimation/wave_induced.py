@@ -32,8 +32,8 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
         return np.zeros((len(track), 3))
     period_s = wave_period_s(track)
     width = max(1, round(period_s / track.h))
-    told = None if track.told is None else {k: running_mean(x, width) for k, x in track.told.items()}
-    mean = replace(track, delta=running_mean(track.delta, width), told=told)
+    orders = None if track.orders is None else {k: running_mean(x, width) for k, x in track.orders.items()}
+    mean = replace(track, delta=running_mean(track.delta, width), orders=orders)
     swift = pushed(track, model) - pushed(mean, model)
     return _earlier(swift, track, period_s) if name.endswith(EARLIER) else swift
 

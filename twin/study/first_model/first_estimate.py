@@ -72,7 +72,7 @@ def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -
         "derivatives": {k: {"value": v, "source": s} for k, (v, s) in d.items()},
     }
     used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
-    screws = [a.name for a in actuators if a.kind in BLADES and not a.drag and "drag" in a.told()]
+    screws = [a.name for a in actuators if a.kind in BLADES and not a.drag and "drag" in a.estimated()]
     actuators = tuple(a.but(drag=OVERRUN_DRAG) if a.name in screws else a for a in actuators)
     notes["derivatives"] |= {f"{name}.drag": {"value": OVERRUN_DRAG, "source": "CAR18"} for name in screws}
     used |= {"CAR18"} if screws else set()

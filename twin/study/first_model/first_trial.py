@@ -15,7 +15,7 @@ from twin.study.prediction.trial import shaft_speed, straight_line_stability, tu
 INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")
 
 
-FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
+FULL_C_B = 0.7  # block coefficient from which ships often do not go straight by themselves
 
 
 def sea_trial(ship: Ship) -> dict[str, Any]:
@@ -47,7 +47,7 @@ def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
 def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
     """In words, what is unusual about a trial of so full a ship."""
     out = []
-    if figures["straight_line_stability"] <= 0 and C_b < FULL:
+    if figures["straight_line_stability"] <= 0 and C_b < FULL_C_B:
         out.append(
             f"that so fine a hull (C_b {C_b:.2f}) does not go straight by itself is rare, and more likely "
             "an error of these regressions than of "
@@ -82,7 +82,7 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     others = [f"--{o} {as_given(value)}" for o in INSIDE if (value := given[o]) is not None]
     lines += ["", f"  also given, and in its derivatives: {', '.join(others)}"] if others else []
     bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
-    unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL)
+    unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL_C_B)
     stable = "goes straight by itself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [

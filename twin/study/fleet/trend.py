@@ -10,7 +10,7 @@ from twin.recording.timebase import moment_of
 from twin.study.fleet.ask import Row
 
 MONTH_S = 30.4375 * 86400.0
-LEAST = 3  # sizes that make a trend
+LEAST_SIZES = 3  # sizes that make a trend
 SD = 1.96  # half a 95 % interval
 UNANSWERED = "not asked yet"
 
@@ -99,7 +99,7 @@ def trend(sizes: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
     Where the sizes scatter more than their intervals, the interval is wider by as much (Birge 1932), by
     Student's t.
     """
-    if len(sizes) < LEAST:
+    if len(sizes) < LEAST_SIZES:
         return None
     when = np.array([moment_of(s["start_time_utc"]) / MONTH_S for s in sizes])
     dated = all(s["start_time_utc"] for s in sizes) and np.ptp(when) >= 1.0

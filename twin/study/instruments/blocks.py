@@ -24,7 +24,7 @@ AFFECT = {
 # without which (or a log of two axes) only how the ship drifts in a turn would tell it, and that is no
 # instrument's business
 WANTS = {"antenna_ahead": ("log aside",), "antenna_starboard": ("log aside",), "gnss_delay": ("own",)}
-STEP = 1e-5  # of a prior width, for slopes
+DIFFERENCE_WIDTHS = 1e-5  # of a prior width, for slopes
 SENSES: dict[str, Callable[[Problem, Theta, Rows | None], np.ndarray]] = {
     "place": place,
     "velocity": velocity,
@@ -72,7 +72,7 @@ def _block(
         wanted = set(WANTS.get(unknown, ()))
         if not wanted <= {*p.by, *(["own"] if p.own else [])} and "log aside" not in p.by:
             continue
-        step = STEP * float(p.widths[INDEX[unknown]])
+        step = DIFFERENCE_WIDTHS * float(p.widths[INDEX[unknown]])
         G[:, INDEX[unknown]] = (sense(p, _with(theta, unknown, step), None) - here) / step
     scatter = max(p.sd[name], 1.4826 * float(np.median(np.abs(r))))
     return Block(name, r, rows.matrix(p.size), G, (np.abs(r) < OUTLIER * scatter).astype(float))

@@ -12,7 +12,7 @@ from twin.study.instruments.problem import Problem
 from twin.study.instruments.select import Weighed, WeighedSets
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, InstrumentUnknown
 
-SEEN = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
+FAULT_BAYES_FACTOR = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
 UNINFORMATIVE = 0.5  # of a prior width: a number that the readings leave wider is not known
 ALIKE = 0.8  # correlation from which two numbers are said to be hard to tell apart
 P95 = 1.96
@@ -77,14 +77,16 @@ def said(
     """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
     for each voyage, in the order of the fit; `clock`: the age that is none by definition. A fault of the
     likeliest set is seen when its log Bayes factor, or that of it and what would stand in its place together,
-    is above SEEN."""
+    is above FAULT_BAYES_FACTOR."""
     book = WeighedSets(found, clock)
     best = book.likeliest()
     factor = {f: book.bayes_factor(f, best) for f in book.tellable}
     everything = book.weigh(book.tellable)
-    instead = {f: book.instead(f, best) for f in best.faults if factor[f] <= SEEN}
+    instead = {f: book.instead(f, best) for f in best.faults if factor[f] <= FAULT_BAYES_FACTOR}
     faults = tuple(
-        f for f in best.faults if factor[f] > SEEN or book.bayes_factor(f, best, instead[f]) > SEEN
+        f
+        for f in best.faults
+        if factor[f] > FAULT_BAYES_FACTOR or book.bayes_factor(f, best, instead[f]) > FAULT_BAYES_FACTOR
     )
     estimates = tuple(
         e for i in range(found.at.size) if (e := _one(i, readings, book, best, faults, factor, everything))

@@ -11,7 +11,7 @@ from twin.recording.voyage import Voyage
 from twin.study.track.track import READINGS, Track
 
 SMALLER_SCATTER = 0.9  # a scatter that is smaller than another by this factor is the smaller one
-FEWEST = 30  # samples of an instrument that can tell anything
+LEAST_INSTRUMENT_SAMPLES = 30  # samples of an instrument that can tell anything
 OWN = {"body": True, "course": False, "earth": False}  # by the frame in which the velocity was recorded
 PER_MOTION = 20  # samples kept in the time in which the ship's turning changes; more say nothing more of it
 
@@ -72,7 +72,7 @@ def of_voyage(voyage: Voyage) -> Readings:
             return None
         y = np.column_stack([voyage.si(c) for c in channels])
         ok = np.isfinite(y).all(axis=1)
-        return ReadingSamples(voyage.time_s[ok], y[ok]) if ok.sum() >= FEWEST else None
+        return ReadingSamples(voyage.time_s[ok], y[ok]) if ok.sum() >= LEAST_INSTRUMENT_SAMPLES else None
 
     return _readings(
         voyage.name,
@@ -98,7 +98,7 @@ def of_track(track: Track) -> Readings:
     def samples(*names: str) -> ReadingSamples | None:
         y = np.column_stack([column[n] for n in names])
         ok = np.isfinite(y).all(axis=1)
-        return ReadingSamples(track.t[ok], y[ok]) if ok.sum() >= FEWEST else None
+        return ReadingSamples(track.t[ok], y[ok]) if ok.sum() >= LEAST_INSTRUMENT_SAMPLES else None
 
     roll = (
         ReadingSamples(track.t, np.asarray(track.weather["phi"])[:, None]) if "phi" in track.weather else None
@@ -121,8 +121,8 @@ def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool |
     by = {k: s for k, s in found.items() if s is not None}
     if "heading" not in by or ("place" not in by and "velocity" not in by):
         raise DataError(
-            f"{name}: no heading, or neither position nor velocity over ground, with {FEWEST} "
-            "samples: nothing can be compared. "
+            f"{name}: no heading, or neither position nor velocity over ground, with "
+            f"{LEAST_INSTRUMENT_SAMPLES} samples: nothing can be compared. "
             "Record them, or say in a map which columns they are."
         )
     time = _time(by["heading"])

@@ -33,14 +33,14 @@ class SlowDisturbances:
 
 
 def disturbances(
-    track: Track, model: Model, floor: NoiseModel | None, start: np.ndarray, rng: np.random.Generator
+    track: Track, model: Model, noise_model: NoiseModel | None, start: np.ndarray, rng: np.random.Generator
 ) -> SlowDisturbances | None:
     """Those that a noise model describes (see innovations.py), drawn by `rng` for every window, in SI;
     `start` (W,): grid steps at which they begin [-]. None where no noise model is known."""
-    if floor is None:
+    if noise_model is None:
         return None
-    size = np.array(floor.share) * np.hypot(busy(track, model), floor.calm * standard(model))
-    flow = floor.flow * float(model.ship.scale("speed"))
+    size = np.array(noise_model.share) * np.hypot(busy(track, model), noise_model.calm * standard(model))
+    flow = noise_model.flow * float(model.ship.scale("speed"))
     water = [np.append(np.zeros(2 * start.size), flow * rng.standard_normal(start.size)) for _ in "ne"]
     keep = float(np.exp(-track.h / (MEMORY_B * float(model.ship.scale("time")))))
     return SlowDisturbances(size, rng.standard_normal((3, start.size)), keep, (water[0], water[1]), rng)

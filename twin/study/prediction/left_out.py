@@ -23,7 +23,7 @@ from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
 AHEAD_LENGTHS = (1.0, 3.0, 10.0)  # beside HORIZONS_S
-APART = 0.2  # of the logarithm: two horizons that are nearer are one
+LEAST_LOG_RATIO = 0.2  # of the logarithm: two horizons that are nearer are one
 LONGEST = 0.25  # of the longest voyage
 # correlation of a healthy voyage's windows before any was sailed, and how many pairs that counts for
 ALIKE, OF_PRIOR = 0.2, 20.0
@@ -34,7 +34,7 @@ def horizons(model: Model, tracks: Sequence[Track], share: float = LONGEST) -> l
     the longest voyage."""
     lengths = [k * float(model.ship.scale("time")) for k in AHEAD_LENGTHS]
     most = share * max(float(t.t[-1] - t.t[0]) for t in tracks)
-    others = [h for h in lengths if all(abs(np.log(h / fixed)) > APART for fixed in HORIZONS_S)]
+    others = [h for h in lengths if all(abs(np.log(h / fixed)) > LEAST_LOG_RATIO for fixed in HORIZONS_S)]
     return [h for h in sorted({*HORIZONS_S, *others}) if h <= most] or [min(most, *HORIZONS_S)]
 
 
@@ -71,7 +71,7 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
     ahead = horizons(model, tracks)
     parts = _parts(tracks, without)
     raw = [
-        _of_part(predict(t, fed(m, t)[0], ahead, floor=noise_model_of(model.ship), seed=i), keep)
+        _of_part(predict(t, fed(m, t)[0], ahead, noise_model=noise_model_of(model.ship), seed=i), keep)
         for i, (t, m, keep) in enumerate(parts)
     ]
     usable = [h for h in ahead if sum(int(w.valid[w.at(h)].sum()) for w in raw) > 2]

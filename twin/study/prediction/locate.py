@@ -21,10 +21,10 @@ from twin.study.prediction.score import pooled
 CHANCE = 0.05
 SHIFTS = 400
 # errors are judged by their logarithm, that one wild window does not decide; this much is added to each
-LEAST = 0.05
-FEWEST = 8  # windows inside and outside a condition
+LEAST_TIME_SHARE = 0.05
+LEAST_WINDOWS_EACH = 8  # windows inside and outside a condition
 RATIO = 1.15  # an error less than this above elsewhere is not worth a sentence
-MOST = 8
+MAX_CONDITIONS = 8
 
 
 def sizes(
@@ -48,14 +48,18 @@ def regimes(
     error = sizes(windows, horizon_s)
     m = means(windows, horizon_s)
     ok = np.isfinite(error)
-    if ok.sum() < 3 * FEWEST:
+    if ok.sum() < 3 * LEAST_WINDOWS_EACH:
         return []
     asked = [(text, mask & ok) for text, mask in conditions(m, ship)]
-    asked = [(text, mask) for text, mask in asked if FEWEST <= mask.sum() <= ok.sum() - FEWEST]
+    asked = [
+        (text, mask)
+        for text, mask in asked
+        if LEAST_WINDOWS_EACH <= mask.sum() <= ok.sum() - LEAST_WINDOWS_EACH
+    ]
     if not asked:
         return []
     masks = np.array([mask[ok] for _, mask in asked], dtype=float)
-    beyond = _beyond_chance(masks, np.log(error[ok] + LEAST), m.voyage[ok])
+    beyond = _beyond_chance(masks, np.log(error[ok] + LEAST_TIME_SHARE), m.voyage[ok])
     floor = sizes(windows, horizon_s, STRUCTURE if structural else SENSORS)[ok]
     found = []
     for (text, mask), inside, stands in zip(asked, masks > 0.5, beyond, strict=True):
@@ -126,7 +130,7 @@ def _distinct(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
     for f in found:
         if all((f["mask"] & k["mask"]).sum() < 0.6 * (f["mask"] | k["mask"]).sum() for k in kept):
             kept.append(f)
-    return kept[:MOST]
+    return kept[:MAX_CONDITIONS]
 
 
 def worst(windows: Sequence[Windows], horizon_s: float, most: int = 5) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ from twin.study.reference.sailed import Sailed, fed, switched_off
 from twin.study.reference.structure import noise_model_of
 
 SCHEMA_VERSION = 1
-# times its floor, from which an error is more than it may be, where no reference voyages told how they
+# times what is expected, from which an error is more than it may be, where no reference voyages told how they
 # scatter
 UNUSUAL_RATIO = 1.5
 
@@ -38,13 +38,13 @@ def compare(
 ) -> ComparedVoyages:
     """Predict every voyage open loop and judge the errors together. DataError: no voyage is long enough
     for a horizon."""
-    ship, floor = model.ship, noise_model_of(model.ship)
+    ship, noise_model = model.ship, noise_model_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
     windows = [
-        predict(s.track, m, horizons_s, floor=floor, seed=i)
+        predict(s.track, m, horizons_s, noise_model=noise_model, seed=i)
         for i, (s, m) in enumerate(zip(sailed, models, strict=True))
     ]
-    rows = with_expected_errors(score.horizons(windows, horizons_s, floor is not None), windows, ship)
+    rows = with_expected_errors(score.horizons(windows, horizons_s, noise_model is not None), windows, ship)
     if not rows:
         raise DataError(
             f"{', '.join(s.track.name for s in sailed)}: no stretch of {as_given(min(horizons_s))} s with "
@@ -52,10 +52,10 @@ def compare(
         )
     longest = rows[-1]["horizon_s"]
     judged = energy([s.track for s in sailed], models)
-    where = locate.regimes(windows, _locating(rows), ship, floor is not None)
+    where = locate.regimes(windows, _locating(rows), ship, noise_model is not None)
     result = _result(ship, model, sailed, rows, judged)
     result |= {
-        "channels": score.channels(windows, floor is not None),
+        "channels": score.channels(windows, noise_model is not None),
         "where": [{k: v for k, v in w.items() if k != "mask"} for w in where],
         "worst_windows": locate.worst(windows, longest),
         "switched_off": switched_off(model, [s.track for s in sailed]),
@@ -100,10 +100,10 @@ def verdict(result: dict[str, Any]) -> str:
     most = [max(score.in_noise(row, k) for k in keys) for row in rows]
     clearly = float(rows[-1]["noise_floor"].get("limit95", UNUSUAL_RATIO))
     row = rows[-1 if most[-1] >= clearly or max(most) < clearly else most.index(max(most))]
-    floor, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
-    of = "of the sensors alone" if floor["of"] == "sensors" else "for this calibrated ship"
+    expects, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
+    of = "of the sensors alone" if expects["of"] == "sensors" else "for this calibrated ship"
     error = f"{num(row[keys[0]], 3)} m and {num(row[keys[1]], 2)} deg"
-    expected = f"expected {of}: {num(floor[keys[0]], 2)} m and {num(floor[keys[1]], 2)} deg"
+    expected = f"expected {of}: {num(expects[keys[0]], 2)} m and {num(expects[keys[1]], 2)} deg"
     ratio = f"ratio {num(times[0], 2)} and {num(times[1], 2)}"
     head = f"{as_given(row['horizon_s'])} s open-loop error: {error}; {expected} ({ratio})"
     if max(times) < clearly:

@@ -4,7 +4,7 @@ Each window begins in the smooth motion under the readings (kinematics only), wi
 instruments undone, and runs on recorded controls and weather; what it promises goes through the instruments
 before it is compared with what they said.
 
-Beside every prediction runs the noise floor: the same window begun in a state that is off as the readings'
+Beside every prediction runs its noise: the same window begun in a state that is off as the readings'
 scatter leaves it, read with that scatter (`SENSORS`); and once more with the slow disturbances a calibrated
 model of this ship is known to miss (`STRUCTURE`). What these two are off by is what a perfect model, and a
 model as good as its calibration, would still show."""
@@ -41,7 +41,7 @@ class Windows:
     track: Track
     start: np.ndarray  # (W,) grid step at which each begins
     lead: np.ndarray  # (K,) grid steps ahead
-    # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
+    # (3, K, W, 8) readings; of the noise only the difference to the model's has a meaning
     promised: np.ndarray
     valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
     seen: np.ndarray  # (N, 8) what was measured, with short holes bridged (see start.py)
@@ -56,7 +56,7 @@ class Windows:
         return int(np.argmin(np.abs(self.lead * self.track.h - horizon_s)))
 
     def off(self, run: int = MODEL) -> np.ndarray:
-        """(K, W, 8) in SI, promise minus measurement of the model; of a floor, what noise alone makes of
+        """(K, W, 8) in SI, promise minus measurement of the model; of noise, what it alone makes of
         it. NaN where not valid."""
         against = self.seen[self.step] if run == MODEL else self.promised[MODEL]
         off = self.promised[run] - against
@@ -79,13 +79,13 @@ def predict(
     model: Model,
     horizons_s: Sequence[float] = HORIZONS_S,
     *,
-    floor: NoiseModel | None = None,
+    noise_model: NoiseModel | None = None,
     stride_s: float = STRIDE_S,
     leads: int = LEADS,
     seed: int = 0,
 ) -> Windows:
-    """Run the model over the track's windows. `floor`: what calibration left unexplained, if the ship knows
-    it.
+    """Run the model over the track's windows. `noise_model`: what calibration left unexplained, if the ship
+    knows it.
 
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
@@ -96,13 +96,13 @@ def predict(
     state, wind_to = true_motion(steadied(track), model)
     fuzz = noisy(track, model, rng)[start]
     begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
-    run = _Run(track, model, start, wind_to, disturbances(track, model, floor, start, rng))
+    run = _Run(track, model, start, wind_to, disturbances(track, model, noise_model, start, rng))
     promised = (
         run.through(tuple(begin), lead).reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
     )
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
     windows = Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
-    return windows if floor is None else _no_better(windows, model.ship)
+    return windows if noise_model is None else _no_better(windows, model.ship)
 
 
 def _no_better(w: Windows, ship: Ship) -> Windows:
@@ -135,7 +135,7 @@ def coarse(
     stride_s: float = STRIDE_S,
     begins: np.ndarray | None = None,
 ) -> Windows:
-    """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit
+    """Run the model alone: `predict` without its noise, and in steps of L/U_0 over COARSE, as a fit
     asks for thousands. `begins` (N,): mask of the steps at which windows may begin, if not at all."""
     return coarse_each(track, model, 1, horizon_s, leads, stride_s, begins)[0]
 
@@ -169,7 +169,7 @@ def coarse_each(
 
 
 def again(windows: Windows, model: Model) -> np.ndarray:
-    """(K, W, 8) in SI, what another model promises over the same windows, without any noise floor."""
+    """(K, W, 8) in SI, what another model promises over the same windows, without any noise."""
     track = windows.track
     state, wind_to = true_motion(steadied(track), model)
     run = _Run(track, model, windows.start, wind_to, None)
@@ -220,7 +220,7 @@ class _Run:
         self.known = replace(model, residual=None)
         self.learned = model.residual
         controls = steered(track, model)
-        self.told = dict(controls.pop("told", {}))
+        self.orders = dict(controls.pop("orders", {}))
         self.inputs = dict(track.weather) | controls | {"n": track.n}
         if wind_to is not None:
             self.inputs["wind_to"] = wind_to
@@ -251,8 +251,8 @@ class _Run:
         for name in ("delta", "n"):
             then = self._of_each(self.inputs[name][after])
             values[name] = values[name] + ahead * (then - values[name])
-        told = {name: self._between(x, step, after, ahead) for name, x in self.told.items()} or None
-        return Situation(**values, told=told, t=self._of_each(self.track.t[step]) + ahead * self.track.h)
+        orders = {name: self._between(x, step, after, ahead) for name, x in self.orders.items()} or None
+        return Situation(**values, orders=orders, t=self._of_each(self.track.t[step]) + ahead * self.track.h)
 
     def _of_each(self, x: np.ndarray) -> np.ndarray:
         """What is the same on all runs of a window."""
@@ -275,14 +275,14 @@ class _Run:
         return replace(self.known, residual=lambda _: force)
 
     def _held(self, k: int, state: tuple) -> Force:
-        """The learned force at the model's own runs; the floors are given the same."""
+        """The learned force at the model's own runs; the noise is given the same."""
         s = self._situation(k)
         s.x, s.y, s.psi, s.u, s.v, s.r = state
         self.known.forces(s, self.known.water(s))
         W = self.start.size
         own = {name: getattr(s, name)[:W] for name in (*STATE, "u_r", "v_r", "t", *self.inputs)}
-        if s.told is not None:
-            own["told"] = {name: x[:W] for name, x in s.told.items()}
+        if s.orders is not None:
+            own["orders"] = {name: x[:W] for name, x in s.orders.items()}
         return Force(*(np.tile(f, self.runs) for f in self.learned(Situation(**own))))  # type: ignore[misc]
 
     def _read(self, k: int, state: tuple) -> np.ndarray:

@@ -23,7 +23,7 @@ from twin.study.prediction.openloop import MODEL, Windows, again
 
 STREAM = 0.05  # of U_0, how fast the water usually moves when nobody has told
 MEMORY_S = 600.0  # after which it may be another
-STEP = 0.02  # of U_0, for the slopes
+SLOPE_STEP = 0.02  # of U_0, for the slopes
 LENGTHS = 3.0  # ahead, over which a stream shows
 
 
@@ -65,7 +65,7 @@ def _informed(
 def _slopes(windows: Windows, model: Model) -> np.ndarray:
     """(2, K, W, 8) what a stream of 1 m/s toward north, and toward east, changes of every promise, to first
     order."""
-    step = STEP * float(model.ship.scale("speed"))
+    step = SLOPE_STEP * float(model.ship.scale("speed"))
     stream = of_role("stream")
     current = next((e for e in model.effects if isinstance(e, stream)), stream.absent(model.ship))
     out = []

@@ -35,8 +35,11 @@ def errors_of(ship: Ship, tracks: Sequence[Track], horizons_s: Sequence[float]) 
 def prior(model: Model, tracks: Sequence[Track], horizons_s: Sequence[float]) -> PathError:
     """Simulated on these tracks with the ship's structural error, or the usual one of ships that were never
     calibrated."""
-    floor = noise_model_of(model.ship) or NoiseModel()
-    windows = [predict(t, fed(model, t)[0], horizons_s, floor=floor, seed=i) for i, t in enumerate(tracks)]
+    noise_model = noise_model_of(model.ship) or NoiseModel()
+    windows = [
+        predict(t, fed(model, t)[0], horizons_s, noise_model=noise_model, seed=i)
+        for i, t in enumerate(tracks)
+    ]
     usable = [h for h in horizons_s if any(w.valid[w.at(h)].any() for w in windows)] or [min(horizons_s)]
     covariance = np.array([WIDER**2 * _covariance(windows, h) for h in usable])
     return PathError(

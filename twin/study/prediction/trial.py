@@ -43,7 +43,7 @@ def shaft_speed(model: Model, speed: float) -> float:
 def controls(model: Model, delta: float, n: float) -> dict[str, Any]:
     """Rudder and shaft, or what actuators are told for as much, as fields of Situation."""
     ship = model.ship
-    return {"told": actuator_orders(ship, delta, n)} if ship.actuators else {"delta": delta, "n": n}
+    return {"orders": actuator_orders(ship, delta, n)} if ship.actuators else {"delta": delta, "n": n}
 
 
 def _power(model: Model, speed: float) -> float:

@@ -17,7 +17,7 @@ from twin.study.reference.evidence import Nuisance
 
 # information in the voyages over what is known beforehand, from which a direction is asked about
 TELLS = 0.02
-SURE = 1e6  # information about what is not asked about
+HELD_INFORMATION = 1e6  # information about what is not asked about
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def directions(
     size = turn[:, asked].T @ np.linalg.solve(root[free], mean[free])
     columns = sd[:, None] * np.column_stack([mean - every @ size, every])
     fresh = tuple(Unknown("usual", str(k), "", 0.0, 1.0, -np.inf, np.inf) for k in range(columns.shape[1]))
-    information = np.array([SURE, *np.ones(size.size)])
+    information = np.array([HELD_INFORMATION, *np.ones(size.size)])
     return Directions(
         Nuisance(fresh, np.diag(information), information * np.array([1.0, *size]), nuisance.daily),
         tuple(place),

@@ -78,7 +78,7 @@ def left_out_scores(
     model: Model,
     catalogue: Mapping[str, type[Effect]],
     known: Known,
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     temper: float,
 ) -> list[float]:
     """The score of each reference voyage when only the others tell what is usual on the ship; none where
@@ -101,6 +101,6 @@ def left_out_scores(
         usual = known.nuisance(without=i).beside(rough)
         usual = replace(usual, daily=dict(usual.daily) | of_known_weather(model, kinds))
         lines = read_lines([track], model, unknowns, kinds, MOST_SEGMENTS)
-        normal = innovate(lines, [floor], MOST_SEGMENTS)[0]
+        normal = innovate(lines, [noise_model], MOST_SEGMENTS)[0]
         out.append(score(reduce(normal, usual, unknowns, effects, temper), causes, weather))
     return out

@@ -22,7 +22,9 @@ from twin.study.estimation.linear import Linear
 from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
-USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
+HEALTHY_WIDTHS = (
+    0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
+)
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
 NOTHING = 1e6  # information of what is none
 
@@ -46,7 +48,7 @@ def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> dict[s
     form is only roughly right, and another wind or sea shows what is not."""
     present = {type(e).__name__ for e in model.effects if e.of_recorded_weather()}
     return {
-        u.label: USUAL * u.sd
+        u.label: HEALTHY_WIDTHS * u.sd
         for name in present
         if name in catalogue
         for u in effect_unknowns(catalogue[name], model)
@@ -57,7 +59,7 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
     """Core derivatives aside, what a calibration fits: the instruments' usual errors, and how late they
     are."""
     faults = [
-        replace(u, sd=USUAL * u.sd)
+        replace(u, sd=HEALTHY_WIDTHS * u.sd)
         for u in lasting(model, catalogue)
         if catalogue[u.owner].kind == "SensorFault"
     ]
@@ -67,7 +69,7 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
     """Core derivatives and what they leave out, in calm water and in waves, what a healthy ship usually shows
     of every lasting effect, and how late its instruments are."""
-    usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
+    usual = (replace(u, sd=HEALTHY_WIDTHS * u.sd) for u in lasting(model, catalogue))
     return (*core_unknowns(model), *form_unknowns(), *sea_unknowns(), *usual, *lateness_unknowns())
 
 
@@ -75,14 +77,14 @@ def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Un
     """The same, and what the days of the reference voyages brought."""
     return (
         *nuisance_unknowns(model, catalogue),
-        *(replace(u, sd=USUAL * u.sd) for u in daily(model, catalogue)),
+        *(replace(u, sd=HEALTHY_WIDTHS * u.sd) for u in daily(model, catalogue)),
     )
 
 
 def from_references(
     lines: Sequence[Linear],
     unknowns: tuple[Unknown, ...],
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     temper: float,
     prior: np.ndarray | None = None,
 ) -> tuple[Nuisance, dict[str, float]]:
@@ -92,7 +94,7 @@ def from_references(
 
     `prior` (C,): prior means where they are not the unknowns' centres.
     """
-    known = known_from(lines, unknowns, floor, temper, prior)
+    known = known_from(lines, unknowns, noise_model, temper, prior)
     return known.nuisance(), known.between
 
 
@@ -102,7 +104,7 @@ class Known:
     variances) numbers differ from one to another; `pull` (C,): of the priors' means."""
 
     unknowns: tuple[Unknown, ...]
-    told: tuple[BetweenVoyages, ...]
+    voyages: tuple[BetweenVoyages, ...]
     scatter: np.ndarray
     pull: np.ndarray
 
@@ -113,7 +115,7 @@ class Known:
 
     def nuisance(self, without: int | None = None) -> Nuisance:
         """As they concern the next voyage; `without` one of them, as that one would have been foretold."""
-        told = [t for i, t in enumerate(self.told) if i != without]
+        told = [t for i, t in enumerate(self.voyages) if i != without]
         mean, covariance = ship_of(told, self.scatter, self.pull)
         covariance = covariance + np.diag(self.scatter)
         lasting_ones = [i for i, u in enumerate(self.unknowns) if not u.every_day]
@@ -133,14 +135,14 @@ class Known:
 def known_from(
     lines: Sequence[Linear],
     unknowns: tuple[Unknown, ...],
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     temper: float,
     prior: np.ndarray | None = None,
 ) -> Known:
     """The same, voyage by voyage. `prior` (P,): their means, in the unknowns' own units."""
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
-    told = voyages(innovate(lines, [floor])[0], sd, temper)
+    told = voyages(innovate(lines, [noise_model])[0], sd, temper)
     return Known(unknowns, tuple(told), scattered(told, pull), pull)
 
 

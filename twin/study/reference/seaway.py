@@ -30,7 +30,9 @@ from twin.study.track.track import Track
 
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
-SEEN = 0.5  # share of what is swift in what is left over of sway or yaw, from which waves are looked for
+WAVE_SHARE = (
+    0.5  # share of what is swift in what is left over of sway or yaw, from which waves are looked for
+)
 SEA = 0.003  # wave height in ship lengths from which a measured sea may move it
 MOST_SEGMENTS = 12  # by which a sea is judged
 STRENGTHS = (1.0, 2.0, 4.0, 8.0)  # of the waves, in units of what the smooth path shows of them
@@ -67,7 +69,7 @@ def swung(track: Track, model: Model) -> Track:
 def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
     """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
     of no waves."""
-    floor, rough = noise_model_of(model.ship) or NoiseModel(), _swinging(track, model)
+    noise_model, rough = noise_model_of(model.ship) or NoiseModel(), _swinging(track, model)
     if rough.swell is None:
         return track, -np.inf, 0.0
     parts = [
@@ -79,7 +81,7 @@ def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> 
     )
 
     def likely(line: Linear) -> float:
-        return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
+        return max(evidence(n, sd) for n in innovate([line], [noise_model.scaled(white=k) for k in WHITES]))
 
     as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
     best = max(as_strong, key=lambda k: as_strong[k])
@@ -101,7 +103,7 @@ def _swinging(track: Track, model: Model) -> Track:
     left -= left.mean(0)
     swift = left - _lately(left, SWIFT * time / track.h)
     share = swift[:, 1:].var(0) / np.maximum(left[:, 1:].var(0), 1e-30)
-    if not at_sea(track, model) and share.max() < SEEN:
+    if not at_sea(track, model) and share.max() < WAVE_SHARE:
         return track
     size, change = (
         _lately(x**2, LATELY * time / track.h) for x in (swift, np.gradient(swift, track.h, axis=0))

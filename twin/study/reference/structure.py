@@ -35,8 +35,8 @@ BESIDE = 0.4
 
 
 def noise_model_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
-    """The floor that calibration left in the ship file, None when it was never calibrated: what the model
-    alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`).
+    """The noise model that calibration left in the ship file, None when it was never calibrated: what the
+    model alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`).
     SettingsError: its file does not hold it as it was written."""
     table = ship.notes.get("structural", {}).get(name)
     if not table:
@@ -84,8 +84,8 @@ def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
 def structural_noise(
     lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel | None = None
 ) -> NoiseModel:
-    """The most probable floor of these reference voyages (linearised about the fitted model): what the core
-    alone leaves."""
+    """The most probable noise model of these reference voyages (linearised about the fitted model): what the
+    core alone leaves."""
     return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS)
 
 
@@ -97,44 +97,57 @@ def structural_noise_beside(
 
 
 def _ascended(
-    lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: NoiseModel, least: float, most: int
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], noise_model: NoiseModel, least: float, most: int
 ) -> NoiseModel:
-    sd, step, floor = np.array([u.sd for u in unknowns]), 2.0, replace(floor, wander=floor.wander or WANDER)
-    best = _scores(lines, [floor], sd, most)[0]
+    sd, step, noise_model = (
+        np.array([u.sd for u in unknowns]),
+        2.0,
+        replace(noise_model, wander=noise_model.wander or WANDER),
+    )
+    best = _scores(lines, [noise_model], sd, most)[0]
     while step > 1.2:
         trials = [
             (i, t)
             for i, change in enumerate(CHANGES)
             for k in (step, 1.0 / step)
-            if _inside(t := change(floor, k), least)
+            if _inside(t := change(noise_model, k), least)
         ]
         scores = _scores(lines, [t for _, t in trials], sd, most)
         better: dict[int, tuple[float, NoiseModel]] = {}
         for (i, trial), score in zip(trials, scores, strict=True):
-            if score > max(best, better.get(i, (best, floor))[0]):
+            if score > max(best, better.get(i, (best, noise_model))[0]):
                 better[i] = (score, trial)
         moves = sorted(better.values(), key=lambda m: -m[0])
-        together = [_together(floor, [m for _, m in moves[:n]]) for n in range(1, len(moves) + 1)]
+        together = [_together(noise_model, [m for _, m in moves[:n]]) for n in range(1, len(moves) + 1)]
         scores = [moves[0][0], *_scores(lines, together[1:], sd, most)] if moves else []
         if moves and max(scores) > best + 0.2:
-            best, floor = max(scores), together[int(np.argmax(scores))]
+            best, noise_model = max(scores), together[int(np.argmax(scores))]
         else:
             step = step**0.5
     # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
     few = 1.0 + 4.0 / max(len(lines), 1)
-    return floor.scaled(few**0.5)
+    return noise_model.scaled(few**0.5)
 
 
-def _together(floor: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseModel:
-    """The floor with all these single changes made together."""
-    start, out = _logs(floor), _logs(floor)
+def _together(noise_model: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseModel:
+    """The noise model with all these single changes made together."""
+    start, out = _logs(noise_model), _logs(noise_model)
     for move in moves:
         out = out + (_logs(move) - start)
     return _noise_model(out)
 
 
-def _logs(floor: NoiseModel) -> np.ndarray:
-    return np.log([*floor.share, *floor.white, floor.calm, floor.flow, floor.sensor, floor.wander])
+def _logs(noise_model: NoiseModel) -> np.ndarray:
+    return np.log(
+        [
+            *noise_model.share,
+            *noise_model.white,
+            noise_model.calm,
+            noise_model.flow,
+            noise_model.sensor,
+            noise_model.wander,
+        ]
+    )
 
 
 def _noise_model(logs: np.ndarray) -> NoiseModel:
@@ -142,16 +155,18 @@ def _noise_model(logs: np.ndarray) -> NoiseModel:
     return NoiseModel((a, b, c), calm, (d, e, f), flow, sensor, wander)
 
 
-def _scores(lines: Sequence[Linear], floors: Sequence[NoiseModel], sd: np.ndarray, most: int) -> list[float]:
-    return [predictive(n, sd) for n in innovate(lines, floors, most)] if floors else []
+def _scores(
+    lines: Sequence[Linear], noise_models: Sequence[NoiseModel], sd: np.ndarray, most: int
+) -> list[float]:
+    return [predictive(n, sd) for n in innovate(lines, noise_models, most)] if noise_models else []
 
 
 def predictive(normal: Normal, sd: np.ndarray) -> float:
     """Mean over the voyages of the log probability of each, given all the others (of one voyage: of each
     half, given the other).
 
-    A floor that only has to explain what the core was fitted to comes out too low, and the next manoeuvre
-    then looks strange. `sd` (P,): the priors' widths."""
+    A noise model that only has to explain what the core was fitted to comes out too low, and the next
+    manoeuvre then looks strange. `sd` (P,): the priors' widths."""
     of = np.array([track for track, _, _ in normal.where])
     if np.unique(of).size == 1:
         of = (np.arange(of.size) * 2) // of.size
@@ -162,8 +177,8 @@ def predictive(normal: Normal, sd: np.ndarray) -> float:
 
 
 def _change(i: int) -> Callable[[NoiseModel, float], NoiseModel]:
-    def change(floor: NoiseModel, factor: float) -> NoiseModel:
-        logs = _logs(floor)
+    def change(noise_model: NoiseModel, factor: float) -> NoiseModel:
+        logs = _logs(noise_model)
         logs[i] += np.log(factor) * (0.5 if i == SENSOR else 1.0)
         return _noise_model(logs)
 
@@ -174,7 +189,7 @@ SENSOR = 8  # the place of the readings' scatter in `_logs`
 CHANGES = tuple(_change(i) for i in range(10))
 
 
-def _inside(floor: NoiseModel, least: float) -> bool:
+def _inside(noise_model: NoiseModel, least: float) -> bool:
     low = {"share": least, "calm": least}
-    values = {name: np.atleast_1d(getattr(floor, name)) for name in BOUNDS}
+    values = {name: np.atleast_1d(getattr(noise_model, name)) for name in BOUNDS}
     return all(low.get(name, 1.0) * lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in values[name])

@@ -31,7 +31,7 @@ LEVEL = 0.9
 LEVELS = (0.8, 0.85, 0.88, 0.9, 0.92, 0.94, 0.96, 0.98)
 FEWEST_FIT, MOST_FIT = 4, 12  # voyages that the regression takes
 COST = 0.02  # what a regime's own quantile may be above the level for want of voyages
-LEAST = 0.05  # of the mean error: a smaller one counts as this in log|error|
+LEAST_ERROR_SHARE = 0.05  # of the mean error: a smaller one counts as this in log|error|
 Array = NDArray[np.float64]
 
 
@@ -134,7 +134,7 @@ def coefficients(
 def ridge(phi: Array, errors: Array, weights: Array) -> Array:
     """c of log|error| = c . phi, each voyage of weight one; the penalty is that of one voyage, in units of
     each number's own spread. phi (N, F), errors and weights (N,), c (F,)."""
-    y = np.log(np.maximum(errors, LEAST * max(errors.mean(), 1e-12)))
+    y = np.log(np.maximum(errors, LEAST_ERROR_SHARE * max(errors.mean(), 1e-12)))
     mean = np.average(phi, axis=0, weights=weights)
     spread = np.sqrt(np.average((phi - mean) ** 2, axis=0, weights=weights))
     moves = spread > 1e-9

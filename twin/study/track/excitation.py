@@ -33,7 +33,7 @@ def _turned(track: Track, ship: Ship) -> float:
 
 def _throttled(track: Track) -> float:
     """How far the shaft's speed moved, as a share of its median."""
-    drives = [x for k, x in (track.told or {"n": track.n}).items() if not k.endswith((".angle", ".pitch"))]
+    drives = [x for k, x in (track.orders or {"n": track.n}).items() if not k.endswith((".angle", ".pitch"))]
     return max((_moved(x[track.whole]) for x in drives), default=0.0)
 
 

@@ -65,7 +65,7 @@ class Track:
     # (N, 8): times its usual scatter that each reading has at that moment (ripple.py)
     ripple: np.ndarray | None = None
     # of a ship with actuators of its own what is recorded of them, `name.attribute` in SI; else None
-    told: Mapping[str, np.ndarray] | None = None
+    orders: Mapping[str, np.ndarray] | None = None
     # behind each steering gear
     rudder: dict[Any, Any] = field(init=False, repr=False, compare=False, default_factory=dict)
 
@@ -78,7 +78,7 @@ class Track:
         return Situation(
             **(
                 values
-                | {"delta": self.delta, "n": self.n, "told": self.told, "t": self.t}
+                | {"delta": self.delta, "n": self.n, "orders": self.orders, "t": self.t}
                 | dict(self.weather)
                 | replaced
             )
@@ -112,7 +112,7 @@ class Track:
             measured=self.measured[keep],
             swell=swell,
             ripple=ripple,
-            told=None if self.told is None else {k: x[keep] for k, x in self.told.items()},
+            orders=None if self.orders is None else {k: x[keep] for k, x in self.orders.items()},
         )
 
     def steps(self) -> np.ndarray:
@@ -171,7 +171,7 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
         measured,
         sd,
         whole,
-        told={k: np.nan_to_num(x) for k, x in controls.items()} or None,
+        orders={k: np.nan_to_num(x) for k, x in controls.items()} or None,
     )
 
 

@@ -2,7 +2,8 @@
 slow.
 
     p' = -2 zeta omega_1 p - omega_1 q + noise,   q' = omega_1 p
-    w' = -2 zeta omega_2 w - omega_2 o + omega p, o' = omega_2 w      omega_1, omega_2 = omega (1 -+ APART)
+    w' = -2 zeta omega_2 w - omega_2 o + omega p, o' = omega_2 w
+    omega_1, omega_2 = omega (1 -+ RESONANCE_OFFSET)
 
 Two resonances, one behind the other: the spectrum of w falls off with frequency to the fourth towards omega =
 0, as no wave pushes for long, and what it does slower than the waves is seen as well as in calm water. (w,
@@ -19,13 +20,13 @@ from scipy.linalg import solve_continuous_lyapunov
 from twin.study.track.track import Track
 
 DAMPING = 0.1  # zeta: how broad a band waves swing it in
-APART = 0.1  # of the resonances from the middle of the band, as a share of its frequency
+RESONANCE_OFFSET = 0.1  # of the resonances from the middle of the band, as a share of its frequency
 
 
 def _band() -> tuple[np.ndarray, np.ndarray]:
     """(4, 4) rate of (w, o, p, q) per omega, and (4, 4) its covariance as long as waves last, w having
     variance one."""
-    first, second = 1.0 - APART, 1.0 + APART
+    first, second = 1.0 - RESONANCE_OFFSET, 1.0 + RESONANCE_OFFSET
     rate = np.zeros((4, 4))
     rate[0], rate[1, 0] = (-2.0 * DAMPING * second, -second, 1.0, 0.0), second
     rate[2, 2:], rate[3, 2] = (-2.0 * DAMPING * first, -first), first

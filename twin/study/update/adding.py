@@ -282,5 +282,8 @@ def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
 
 def ahead(tracks: Sequence[Track], model: Model, horizons_s: Sequence[float]) -> list[Windows]:
     """Open-loop predictions of every voyage."""
-    floor = noise_model_of(model.ship)
-    return [predict(t, fed(model, t)[0], horizons_s, floor=floor, seed=i) for i, t in enumerate(tracks)]
+    noise_model = noise_model_of(model.ship)
+    return [
+        predict(t, fed(model, t)[0], horizons_s, noise_model=noise_model, seed=i)
+        for i, t in enumerate(tracks)
+    ]

@@ -16,7 +16,7 @@ from twin.study.reference.sailed import fed
 from twin.study.track.track import Track
 from twin.study.update.adding import Fitted, ahead, lasting
 
-LEAST = 2.0  # times that a voyage must hold a horizon to be judged at it
+HORIZONS_HELD = 2.0  # times that a voyage must hold a horizon to be judged at it
 FOLDS = 3  # parts of every voyage, each predicted with numbers fitted to the others
 Judging = tuple[np.ndarray, float]  # covariance of the error so far ahead, by which a stream is known
 
@@ -45,7 +45,7 @@ def predicted(
     place."""
     base = made.case.model
     models = made.of_parts(FOLDS) if cross_validated else [made.model]
-    judged_s = horizons(base, tracks, 1.0 / LEAST)
+    judged_s = horizons(base, tracks, 1.0 / HORIZONS_HELD)
     asked = sorted({*judged_s, *shown_s})
     errors = errors_of(base.ship, tracks, asked)
     before, after = (_each(tracks, some, asked) for some in ([base] * len(models), models))

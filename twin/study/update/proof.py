@@ -32,7 +32,7 @@ from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, Windows
 from twin.study.reference.path_error import PathError
 
-FEWEST = 2.0  # windows that do not overlap, below which nothing can be said
+LEAST_PROOF_WINDOWS = 2.0  # windows that do not overlap, below which nothing can be said
 LENGTHS = 3.0  # that a ship must be predicted ahead, at least: nearer than that it hardly moves
 LEVEL = 0.05  # of all changes that are none, the share that may be taken for one
 BLOCKS = 6.0  # into how many blocks the voyages are cut for the interval, at least
@@ -96,13 +96,13 @@ def prove(
     too few to say anything.
 
     `time_s`: L/U_0, in which the ship sails its length."""
-    asked = [h for h in horizons_s if sum(independent(w, h) for w in before) >= FEWEST]
+    asked = [h for h in horizons_s if sum(independent(w, h) for w in before) >= LEAST_PROOF_WINDOWS]
     least = min(max(HORIZONS_S), LENGTHS * time_s)
     if max(asked, default=0.0) < 0.99 * least:
         raise DataError(
             f"{', '.join(w.track.name for w in before)}: what is left to judge by does not hold "
-            f"{as_given(FEWEST)} windows of {least:.0f} s that do not overlap. Give a longer voyage, or "
-            "another one with --held-out."
+            f"{as_given(LEAST_PROOF_WINDOWS)} windows of {least:.0f} s that do not overlap. Give a longer "
+            "voyage, or another one with --held-out."
         )
     pairs = list(zip(before, after, strict=True))
     gains = [[_gain(b, a, errors, h) for h in asked] for b, a in pairs]

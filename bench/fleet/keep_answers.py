@@ -1,0 +1,36 @@
+"""Answers of the fleet put into docs/results, of which `python docs/results_page.py` makes the page on the
+judgement: `python -m bench.fleet keep --first FOLDER`."""
+
+import argparse
+import json
+from pathlib import Path
+
+from bench.fleet import decision_fit, kept_rows
+from bench.fleet.fleet_page import rows_of
+
+RESULTS = Path(__file__).resolve().parents[2] / "docs" / "results"
+TABLE, FACTS, FIT = RESULTS / "fleet.csv", RESULTS / "fleet_facts.jsonl", RESULTS / "fleet_fit.json"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    for asked, about in kept_rows.TIMES.items():
+        parser.add_argument(
+            f"--{asked}",
+            type=Path,
+            nargs="*",
+            default=[],
+            metavar="FOLDER",
+            help=f"folders with rows.jsonl of {about}",
+        )
+
+
+def run(args: argparse.Namespace) -> int:
+    """The rows put down, and what families of ships ask of the decision for the one that is left out: of the
+    first batch, and of all voyages, each with its latest answer. (Minutes.)"""
+    answers = [(row, asked) for asked in kept_rows.TIMES for row in rows_of(getattr(args, asked))]
+    kept_rows.write(answers, TABLE, FACTS)
+    rows = kept_rows.read(TABLE, FACTS)
+    each = {"first": kept_rows.of_batch(rows, "first"), "together": kept_rows.together(rows)}
+    fit = {name: decision_fit.chosen(decision_fit.with_facts(of)) for name, of in each.items()}
+    FIT.write_text(json.dumps(fit, indent=1) + "\n")
+    return 0
