@@ -17,6 +17,7 @@ from twin.api.result import Result
 from twin.physics.effects import find
 from twin.physics.model import Model
 
+OF_VERBS = ("history", "project", "replay", "training")  # pages that no class of results has
 KINDS = (
     "Calibration",
     "Comparison",
@@ -29,7 +30,7 @@ KINDS = (
     "TubeCalibration",
     "Update",
     "VoyageCheck",
-    "project",
+    *OF_VERBS,
 )
 WITH_PLOTS = ("Comparison", "Diagnosis", "Update")
 PICTURES = os.environ.get("REPORT_PICTURES")
@@ -107,7 +108,7 @@ def test_no_kind_of_page_is_forgotten(every):
     """Expected: each class of results that has a page, and the page of a project."""
     for module in pkgutil.iter_modules(twin.api.__path__):
         importlib.import_module(f"twin.api.{module.name}")
-    kinds = {c.__name__ for c in Result.__subclasses__()} | {"project"}
+    kinds = {c.__name__ for c in Result.__subclasses__()} | set(OF_VERBS)
     assert kinds == set(KINDS) == set(every)
 
 
@@ -199,7 +200,7 @@ def test_the_keys_do_on_the_plots_what_the_mouse_does(page, every, kind):
     assert page.value("document.activeElement.getAttribute('aria-pressed')") == "true"
 
 
-@pytest.mark.parametrize("kind", [k for k in KINDS if k in (*WITH_PLOTS, "Fleet", "project")])
+@pytest.mark.parametrize("kind", [k for k in KINDS if k in (*WITH_PLOTS, "Fleet", "project", "replay")])
 def test_buttons_are_pressed_by_enter_and_by_the_space_bar_and_keep_the_focus(page, every, kind):
     opened(page, every[kind])
     shown = "document.documentElement.dataset.theme"

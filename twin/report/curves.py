@@ -89,8 +89,8 @@ def drawn(curves: Curves) -> str:
 
 
 def thinned(x: np.ndarray, y: np.ndarray) -> list[tuple[float, float]]:
-    """The line with at most 2 BINS points that looks the same: the least and the greatest of each bin. Both
-    (N,), x ascending; what is not finite is left out."""
+    """The line with at most 2 BINS points that looks the same: the least and the greatest of each bin. x (N,)
+    [s] ascending, y (N,) in whatever unit it has; what is not finite is left out."""
     there = np.isfinite(y)
     x, y = x[there], y[there]
     if x.size <= 2 * BINS:
@@ -127,6 +127,8 @@ def _grid(across: _Axis, up: _Axis, at, curves: Curves) -> list[str]:  # type: i
 
 
 def _text(x: float, y: float, words: str, anchor: str) -> str:
+    if not words:
+        return ""
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="var(--soft)">{escape(words)}</text>'
 
 

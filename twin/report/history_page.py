@@ -59,7 +59,7 @@ def steps_of(ship: Ship) -> list[Step]:
     """The calibration, where there was one, and every step after it, the oldest first."""
     found = ship.notes.get("structural") or {}
     if not found.get("date"):
-        return ladder(ship)
+        return [*ladder(ship)]
     errors = [
         {
             "horizon_s": row["horizon_s"],
@@ -72,7 +72,7 @@ def steps_of(ship: Ship) -> list[Step]:
         if row.get("position_m") is not None
     ]
     calibrated = {"date": found["date"], "calibrated": True, "voyages": found.get("voyages", [])}
-    steps = [calibrated | {"errors": errors}, *ladder(ship)]
+    steps: list[Step] = [calibrated | {"errors": errors}, *ladder(ship)]
     return sorted(steps, key=lambda step: str(step.get("date", "")))
 
 

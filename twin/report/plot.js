@@ -77,6 +77,16 @@ function line(pen, { t, y }, X, Y, from, to, gap, breaks) {
   pen.stroke();
 }
 
+/** A band between two lines; what changes within a pixel is thinned. */
+function ribbon(pen, { t, low, high }, X, Y, from, to) {
+  const a = Math.max(lower(t, from) - 1, 0), b = Math.min(lower(t, to) + 1, t.length), every = Math.max(1, Math.floor((b - a) / (2 * pen.canvas.clientWidth)));
+  pen.beginPath();
+  for (let i = a; i < b; i += every) pen.lineTo(X(t[i]), Y(high[i]));
+  for (let i = a + every * Math.floor((b - 1 - a) / every); i >= a; i -= every) pen.lineTo(X(t[i]), Y(low[i]));
+  pen.fillStyle = colour("noise"); pen.globalAlpha = 0.2;
+  pen.fill(); pen.globalAlpha = 1;
+}
+
 /** Round steps for an axis. */
 function steps(low, high, count) {
   const raw = (high - low) / count || 1, power = 10 ** Math.floor(Math.log10(raw));
@@ -110,7 +120,8 @@ function plot(height, series, options = {}) {
 
 function paint(start, series, options) {
   const [pen, width, height] = start(), { from, to } = view, inner = height - 8;
-  let [low, high] = extent(series.map((s) => s.data), from, to);
+  const tube = options.tube, edges = tube ? [{ t: tube.t, y: tube.low }, { t: tube.t, y: tube.high }] : [];
+  let [low, high] = extent([...series.map((s) => s.data), ...edges], from, to);
   if (!(low <= high)) [low, high] = [-1, 1];
   if (options.band) { const most = Math.max(-low, high, 2.5 * options.band); [low, high] = [-most, most]; }
   const pad = 0.06 * (high - low) || Math.max(Math.abs(high) * 0.02, options.least || 0.01);
@@ -123,6 +134,7 @@ function paint(start, series, options) {
     pen.fillRect(LEFT, Y(options.band), width - LEFT, Y(-options.band) - Y(options.band)); pen.globalAlpha = 1;
   }
   pen.save(); pen.beginPath(); pen.rect(LEFT, 0, width - LEFT, height); pen.clip();
+  if (tube) ribbon(pen, tube, X, Y, from, to);
   for (const s of series) {
     pen.strokeStyle = colour(s.colour); pen.lineWidth = s.width || 1.2; pen.globalAlpha = s.alpha || 1; pen.lineJoin = "round";
     line(pen, s.data, X, Y, from, to, s.gap || 15, s.breaks);
