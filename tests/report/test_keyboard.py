@@ -248,3 +248,22 @@ def test_a_page_fits_a_phone_and_paper(page, every, kind):
     page.value("dispatchEvent(new Event('afterprint'))")
     page.ask("Emulation.setEmulatedMedia", media="screen")
     assert found[0] == [] and found[1] == 0 and found[2] <= 794
+
+
+@pytest.mark.parametrize("kind", (*WITH_PLOTS, "replay"))
+def test_what_is_drawn_is_not_squeezed_on_paper(page, every, kind):
+    """Test: printed from a window of 1400 px. Expected: each drawing is as high for its width as it was drawn, for a
+    page that is about as wide as paper."""
+    opened(page, every[kind], 1400)
+    page.value("dispatchEvent(new Event('beforeprint'))")
+    assert page.value("document.querySelector('main').clientWidth") == 720
+    page.ask("Emulation.setEmulatedMedia", media="print")
+    drawn = page.value(
+        "[...document.querySelectorAll('main canvas')].filter((e) => e.checkVisibility())"
+        ".map((e) => [e.width / e.height, e.clientWidth / e.clientHeight])"
+    )
+    page.ask("Emulation.setEmulatedMedia", media="")
+    page.value("dispatchEvent(new Event('afterprint'))")
+    assert len(drawn) > 8
+    for made, shown in drawn:
+        assert shown == pytest.approx(made, rel=0.03)

@@ -1,5 +1,5 @@
 // Plots over time: one zoom for all of them; a pixel column shows the least and the greatest of its samples.
-const view = { voyage: 0, from: 0, to: 1, panels: [], watchers: [] };
+const view = { voyage: 0, from: 0, to: 1, panels: [], watchers: [], frame: 0 };
 
 function setZoom(from, to) {
   const v = DATA.voyages[view.voyage], least = 2;
@@ -12,10 +12,29 @@ function setZoom(from, to) {
   redraw();
 }
 
+/** What is on the screen is drawn with the next frame, once however often it was asked for; the rest when it comes near. */
 function redraw() {
-  for (const panel of view.panels) panel.draw();
+  if (!view.frame) view.frame = requestAnimationFrame(() => {
+    view.frame = 0;
+    for (const panel of view.panels) if (panel.near === false) panel.stale = true; else panel.draw();
+    for (const watcher of view.watchers) watcher();
+  });
+}
+
+/** Everything, now: for paper. */
+function drawAll() {
+  for (const panel of view.panels) { panel.draw(); panel.stale = false; }
   for (const watcher of view.watchers) watcher();
 }
+
+const nearby = new IntersectionObserver((seen) => {
+  for (const one of seen) {
+    const panel = view.panels.find((p) => p.box === one.target);
+    if (!panel) { nearby.unobserve(one.target); continue; }
+    panel.near = one.isIntersecting;
+    if (panel.near && panel.stale) { panel.draw(); panel.stale = false; }
+  }
+}, { rootMargin: "150px" });
 
 /** First index with t[i] >= x. */
 function lower(t, x) {
@@ -28,7 +47,7 @@ function lower(t, x) {
 function sheet(height, label) {
   const canvas = el("canvas", { role: "img", "aria-label": label, style: { height: `${height}px` } });
   const start = () => {
-    const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
+    const ratio = document.documentElement.classList.contains("paper") ? 2 : window.devicePixelRatio || 1, width = canvas.clientWidth;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
     const pen = canvas.getContext("2d");
@@ -112,9 +131,10 @@ function plot(height, series, options = {}) {
   const [canvas, start] = sheet(height, options.label), cursor = el(".cursor"), picked = el(".picked");
   const box = el(".draw", null, canvas, cursor, picked);
   const seconds = (px) => view.from + ((px - LEFT) / Math.max(canvas.clientWidth - LEFT, 1)) * (view.to - view.from);
-  const panel = { cursor, picked, seconds, draw() { paint(start, series, options); } };
+  const panel = { box, cursor, picked, seconds, draw() { paint(start, series, options); } };
   steer(box, canvas, picked, seconds);
   view.panels.push(panel);
+  nearby.observe(box);
   return box;
 }
 

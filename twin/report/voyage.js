@@ -91,7 +91,7 @@ function live() {
   const zoomed = location.hash.match(/t=([\d.]+),([\d.]+)/);
   zoomed ? setZoom(+zoomed[1], +zoomed[2]) : redraw();
   addEventListener("resize", () => { redraw(); point(null); stretch(null, null); });
-  printedLight(redraw);
+  printedLight(drawAll);
   addEventListener("keydown", (e) => e.key === "Escape" && whole());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", (e) => setTheme(e.matches ? "dark" : "light"));
 }

@@ -89,9 +89,7 @@ def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated):
         assert numbers["ease"]["value"] == lags[name].ease > 0.0 and numbers["ease"]["sd"] > 0.0
     assert set(lags) <= set(boat.notes["structural"]["beside_effects"])
     for name in BOTH:
-        assert any(
-            line.startswith(f"  {name} lags behind what was recorded of it") for line in terminal_lines(said)
-        )
+        assert any(line.startswith(f"  {name} lags behind what was recorded of it") for line in terminal_lines(said))
 
 
 @pytest.mark.parametrize("name", ["kvlcc2", "container", "usv"])
