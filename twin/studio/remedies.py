@@ -114,7 +114,8 @@ def _value(text: str) -> Any:
 
 
 def edited(text: str, edit: Edit) -> str:
-    """The map with an edit made; what a check asks for counts from what the map says already."""
+    """The map with an edit made; what a check asks for counts from what the map says already. A channel that
+    the map lacks is taken from the column that the edit names."""
     data = tomllib.loads(text)
     if "swap" in edit:
         one, other = edit["swap"]
@@ -126,6 +127,8 @@ def edited(text: str, edit: Edit) -> str:
                 text = _time(text, key, value)
         elif channel != "swap" and channel in data.get("columns", {}):
             text = _line(text, channel, _with(data["columns"][channel], keys))
+        elif channel in NAMES and "column" in keys:
+            text = text.replace("[columns]\n", f"[columns]\n{channel} = {toml(dict(keys))}\n", 1)
     return text
 
 
