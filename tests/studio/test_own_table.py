@@ -42,7 +42,7 @@ def tables(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(tab, serve, tmp_path_factory):
-    served = serve(tmp_path_factory.mktemp("empty") / "project")
+    served = serve(tmp_path_factory.mktemp("empty"))
     yield opened(tab, served)
     served.stop()
 
@@ -54,19 +54,23 @@ def drop(page, path):
     node = page.ask("DOM.querySelector", nodeId=root, selector="#files")["nodeId"]
     page.ask("DOM.setFileInputFiles", files=[str(path)], nodeId=node)
     page.wait(f"location.hash === {json.dumps(f'#/data/{path.name}')}", 30)
-    settled(page)
+    looked_at(page, path.name)
 
 
-def settled(page):
-    page.wait(f"!{BUSY} && document.querySelectorAll('main section').length > 1", 60)
+def looked_at(page, name):
+    """Until what was found of the file is shown."""
+    page.wait(
+        f"!{BUSY} && document.querySelector('main h1')?.textContent === {json.dumps(name)}"
+        " && /Recognised/.test(document.querySelector('main').innerText)",
+        60,
+    )
 
 
 def pressed(page, selector):
     before = page.value("twinStudio.drawn")
     page.value(f"document.querySelector({json.dumps(selector)}).click()")
     page.wait(f"twinStudio.drawn > {before}", 30)
-    settled(page)
-    page.wait("/Recognised/.test(document.querySelector('main').innerText)", 60)
+    looked_at(page, "log.csv")
 
 
 def take(page, column, channel):
@@ -119,12 +123,34 @@ def test_an_owners_bad_table_becomes_a_voyage_by_buttons_alone(page, tables):
 
 def test_a_unit_is_chosen_anew_in_the_table_of_the_map(page, tables):
     go(page, "#/data/log.csv")
-    settled(page)
+    looked_at(page, "log.csv")
     page.value(
         """(() => { const s = document.querySelector('[aria-label="Unit of yaw rate in the file"]');
         s.value = "deg/s"; s.dispatchEvent(new Event("change")); })()"""
     )
-    page.wait("document.querySelector('#remedy-yaw_rate-0')", 60)
+    page.wait("!!document.querySelector('#remedy-yaw_rate-0')", 60)
     folder = page.value("twinStudio.state.project.folder")
     with open(f"{folder}/log-map.toml") as file:
         assert 'yaw_rate_degps = { column = "ROT", unit = "deg/s" }' in file.read()
+
+
+def test_two_windows_do_not_write_over_each_other(page, tables):
+    """Test: the map is changed in another window, or by an editor, and then in this one. Expected: one line, the
+    other's map is as it was; after another look this window's change is taken."""
+    folder = page.value("twinStudio.state.project.folder")
+    path = f"{folder}/log-map.toml"
+    with open(path) as file:
+        other = "# mine\n" + file.read()
+    with open(path, "w") as file:
+        file.write(other)
+    page.value("document.querySelector('#remedy-yaw_rate-0').click()")
+    page.wait("/changed meanwhile/.test(document.body.innerText)", 30)
+    with open(path) as file:
+        assert file.read() == other
+    go(page, "#/data")
+    go(page, "#/data/log.csv")
+    page.wait("!!document.querySelector('#remedy-yaw_rate-0')", 60)
+    pressed(page, "#remedy-yaw_rate-0")
+    with open(path) as file:
+        text = file.read()
+    assert text.startswith("# mine\n") and 'yaw_rate_degps = { column = "ROT", unit = "deg/min" }' in text

@@ -49,6 +49,9 @@ ASSIGNED = re.compile(
 )
 TIME = re.compile(r'\[time\] (rebuild|unit) = ("[^"]*"|true|[\d.]+)')
 FOR = re.compile(r" for ([a-z_ ]+?)(?: \(|[.,;]|$)")
+VERDICT = re.compile(
+    r"^# cannot be imported by it yet: .*\n", re.MULTILINE
+)  # no longer true of what is edited
 SWAP = "swap their columns"
 Edit = dict[str, Any]  # channel ("time" for [time]) -> keys to write; "swap": two channels
 
@@ -117,6 +120,7 @@ def edited(text: str, edit: Edit) -> str:
     """The map with an edit made; what a check asks for counts from what the map says already. A channel that
     the map lacks is taken from the column that the edit names."""
     data = tomllib.loads(text)
+    text = VERDICT.sub("", text)
     if "swap" in edit:
         one, other = edit["swap"]
         data["columns"][one], data["columns"][other] = data["columns"][other], data["columns"][one]

@@ -111,7 +111,7 @@ function mapCard(k, x, name) {
   const seen = (c) => { const s = k.columns.find((o) => o.name === c); return s ? `${asGiven(s.low, 4)} to ${asGiven(s.high, 4)} ${named(c)[1]}` : ""; };
   const rows = (k.entries || []).map((e) => [named(e.channel)[0], e.column, [unitOf(k, e, name),  e.sign < 0 ? "other sign" : "", e.offset ? `offset ${num(e.offset)}` : "", e.frame].filter(Boolean).map((part, i) => (i ? [" ", part] : part)), seen(e.channel)]);
   return card("The map: which column is what", rows.length ? table(k.map ? `As ${k.map} says` : "Proposed from names, units, ranges and motion; nothing is written yet", ["channel", "column of the file", "read as", "values"], rows) : null, taker(k, name),
-    el("details", { open: !!k.problem }, el("summary", null, "The map as text"), text, el(".tools", null, button(`Save as ${mapOf(name)}`, doing(async () => { await ask("/api/maps", { name: mapOf(name), text: text.value }); await again(); }), { id: "save-map", disabled: state.project.read_only }))));
+    el("details", { open: !!k.problem }, el("summary", null, "The map as text"), text, el(".tools", null, button(`Save as ${mapOf(name)}`, doing(async () => { await ask("/api/maps", { name: mapOf(name), text: text.value, base: k.map ? k.map_text : undefined }); await again(); }), { id: "save-map", disabled: state.project.read_only }))));
 }
 
 const write = (k, name, edit) => doing(async () => { await ask("/api/remedy", { name: mapOf(name), text: k.map_text, edit: edit() }); await again(); });
