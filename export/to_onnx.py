@@ -67,8 +67,7 @@ def manifest(
         "features": WIDTH,
         "W": W.tolist(),
         "W_max": 1.5 * float(np.linalg.norm(W)) + 1e-6,
-        "force_scale": {"X_N": float(network.S.X), "Y_N": float(network.S.Y), "N_Nm": float(network.S.N)},
-        "output_bound": float(network.bound),
+        **limits(network),
         "whitening": whitening(phi),
         "spectral_norms": [
             float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.layers
@@ -76,6 +75,17 @@ def manifest(
         "golden": {"inputs": x.tolist(), "outputs": answers.tolist()},
         "training": training,
     }
+
+
+def limits(network: ResidualNetwork) -> dict[str, Any]:
+    """The most that the network can say: its bound, in units of the scale of forces."""
+    scale = {"X_N": float(network.S.X), "Y_N": float(network.S.Y), "N_Nm": float(network.S.N)}
+    return {"force_scale": scale, "output_bound": float(network.bound)}
+
+
+def bounds(network: ResidualNetwork) -> dict[str, Any]:
+    """That, and the range of each input within which it is believed."""
+    return {**limits(network), "inputs": _inputs(network)}
 
 
 def _inputs(network: ResidualNetwork) -> list[dict[str, Any]]:

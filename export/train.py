@@ -14,6 +14,7 @@ from twin.errors import DataError, ThresholdError, TwinError
 from twin.num import num
 from twin.physics.ship import Ship, load
 from twin.recording.jsonable import plain
+from twin.report.training_page import training_page
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.track.track import Track, track
 
@@ -93,6 +94,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--force", action="store_true", help="write it although it does not help")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the curves")
 
 
 def tell(text: str) -> None:
@@ -118,6 +120,9 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         whole.write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout
+    if args.report:
+        whole.write(args.report, training_page(result), "--report")
+        print(f"wrote {args.report}", file=page)
     if not result["written"]:
         raise ThresholdError(f"{result['verdict']}; {output} was not written. Give more voyages, or --force.")
     print(f"{result['verdict']}\nwrote {output} and {output.with_suffix('.json')}", file=page)
@@ -185,7 +190,7 @@ def learn(
         )
     for seed in seeds:
         output.with_name(f".{output.name}.{seed}.part.pt").unlink(missing_ok=True)
-    return plain(result)
+    return plain(result | {"curve": best.curve, "bounds": to_onnx.bounds(best.network)})
 
 
 def on_one_grid(sailed: list[Sailed], ship: Ship) -> list[Track]:

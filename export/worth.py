@@ -16,15 +16,21 @@ from twin.num import num
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
+LEADS_S = (10.0, 60.0, 120.0)  # at which the errors are told apart, as far as the horizon goes
 LENGTHS = 3.0  # the horizon, in ship lengths sailed: 120 s for KVLCC2
 RESAMPLES = 2000
 RUNAWAY = 1e6
 
 
+Pair = tuple[float, float]
+NAMES = ("physics", "with_residual")
+
+
 @dataclass(frozen=True)
 class Worth:
     """Mean errors over the horizon without and with the residual, and the 95 % interval of the ratio of
-    places."""
+    places; `leads`: the mean errors after so many seconds (s, [m] without and with, [deg] without and
+    with)."""
 
     horizon_s: float
     windows: int
@@ -33,6 +39,7 @@ class Worth:
     heading_deg: tuple[float, float]
     ratio_low95: float
     ratio_high95: float
+    leads: tuple[tuple[float, Pair, Pair], ...] = ()
 
     @property
     def proved(self) -> bool:
@@ -56,20 +63,28 @@ class Worth:
             "windows": self.windows,
             "blocks": self.blocks,
             "worth_having": self.proved,
-            "position_mae_m": dict(zip(("physics", "with_residual"), self.position_m, strict=True)),
-            "heading_mae_deg": dict(zip(("physics", "with_residual"), self.heading_deg, strict=True)),
+            "position_mae_m": dict(zip(NAMES, self.position_m, strict=True)),
+            "heading_mae_deg": dict(zip(NAMES, self.heading_deg, strict=True)),
             "position_ratio_95": [self.ratio_low95, self.ratio_high95],
+            "by_horizon": [
+                {
+                    "horizon_s": s,
+                    "position_m": dict(zip(NAMES, place, strict=True)),
+                    "heading_deg": dict(zip(NAMES, heading, strict=True)),
+                }
+                for s, place, heading in self.leads
+            ],
         }
 
 
 def errors(network: ResidualNetwork | None, model: Model, w: TrainingWindows) -> np.ndarray:
-    """(W, 2) mean position error [m] and heading error [deg] along each free run."""
+    """(K, W, 2) position error [m] and heading error [deg] at each step along each free run."""
     with torch.no_grad():
         off = torch.nan_to_num(
             free_run(network, model, w.start, w.inputs, w.h) - w.wanted, nan=RUNAWAY
         ).clamp(-RUNAWAY, RUNAWAY)
     place, heading = off[..., :2].norm(dim=-1), torch.rad2deg(off[..., 2].abs())
-    return torch.stack([place.mean(0), heading.mean(0)], -1).double().numpy()
+    return torch.stack([place, heading], -1).double().numpy()
 
 
 def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], seed: int = 0) -> Worth:
@@ -78,7 +93,8 @@ def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], s
     length_s = float(model.ship.scale("time"))
     horizon = min(LENGTHS * length_s, 0.3 * max(len(leg) * leg.h for leg in legs))
     w = windows(legs, input_names(legs), horizon, 0.5 * length_s)
-    before, after = errors(None, model, w), errors(network, model, w)
+    course = errors(None, model, w), errors(network, model, w)
+    before, after = (run.mean(0) for run in course)
     low, high = ratio(before[:, 0], after[:, 0], w.group, seed)
     return Worth(
         horizon,
@@ -88,7 +104,17 @@ def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], s
         (float(before[:, 1].mean()), float(after[:, 1].mean())),
         low,
         high,
+        tuple(_at(s, course, float(w.h.mean())) for s in (*LEADS_S, horizon) if s <= horizon),
     )
+
+
+def _at(lead_s: float, course: tuple[np.ndarray, np.ndarray], h: float) -> tuple[float, Pair, Pair]:
+    """The mean errors `lead_s` after the start; both courses (K, W, 2) in steps of h [s], the first h after
+    it."""
+    k = min(max(round(lead_s / h) - 1, 0), len(course[0]) - 1)
+    without, with_it = (run[k].mean(0) for run in course)
+    place, heading = ((float(without[i]), float(with_it[i])) for i in (0, 1))
+    return lead_s, place, heading
 
 
 def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -> tuple[float, float]:

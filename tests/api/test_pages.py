@@ -34,7 +34,7 @@ def test_a_page_says_its_sentence_what_to_heed_and_draws_every_row():
     page = result_page("<Alma>", "Half & better.", ["<script>alert(1)</script>"], (bars, table))
     assert "<script" not in page and "<script>alert(1)</script>" in words(page)
     widths = [float(w) for w in re.findall(r'<rect [^>]*width="([\d.]+)"', page)]
-    assert len(widths) == 2 and widths[0] == pytest.approx(4.0 * widths[1])  # of the row that has both
+    assert widths == pytest.approx([130.0, 32.5, 260.0])  # 4, 1 and 8 m: the longest fills its room
     for said in ("<Alma>", "Half & better.", "4.00 m before", "1.00 m now", "60 s 8.00 -"):
         assert said in words(page)
 
@@ -46,7 +46,10 @@ def test_a_page_asks_nobody_for_anything(first):
 
 def test_a_first_model_says_what_it_does_and_where_each_number_is_from(first):
     said = words(first.page())
-    assert "first model from its main particulars" in said and "overshoot_20_20_deg" in said
+    assert (
+        "first model from its main particulars" in said
+        and "first overshoot of the 20/20 zigzag 8.93 deg at most 25 deg" in said
+    )
     assert {row["source"] for row in first.to_dataframe().to_dict("records")} >= {"given"}
     assert len(repr(first)) < 200 and first.ship.L_pp == 180.0
     with pytest.raises(twin.errors.UsageError, match="block_coefficient"):

@@ -1,48 +1,23 @@
 """`twin tube`: from voyages to the [tube] of a ship file, which the loop then says."""
 
 import json
-from math import degrees, radians
 
-import numpy as np
 import pytest
 
 import twin
+from tests.report.boat import straight_with_a_turn
 from twin import cli
 from twin.api.json_key import unknown_paths
 from twin.api.json_keys import KEYS
 from twin.errors import DataError
 from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
-from twin.physics.model import Model
-from twin.physics.state import Situation
-
-SECONDS, STEP_S = 100.0, 0.1
-
-
-def sailed(path, seed):
-    """The bundled boat under its own model, straight on with a turn in the middle, as a table of measurements."""
-    ship, rng = twin.Ship.load("usv"), np.random.default_rng(seed)
-    model, n = Model.of(ship), 0.9 * ship.U_0 / (0.7 * ship.D_P)
-    state, rows = (0.0, 0.0, 0.5 * seed, 0.8 * ship.U_0, 0.0, 0.0), []
-    for k in range(round(SECONDS / STEP_S)):
-        rudder = 6.0 if 40.0 <= k * STEP_S < 44.0 else 0.0
-        x, y, psi, u, v, r = state
-        noise = rng.normal(size=6) * (0.05, 0.05, 0.1, 0.01, 0.01, 0.1)
-        measured = np.array([x, y, degrees(psi) % 360.0, u, v, degrees(r)]) + noise
-        rows.append([k * STEP_S, *measured, rudder, 60.0 * n, 0.01])
-        state = model.step(state, Situation(delta=radians(rudder), n=n), STEP_S)
-    names = (
-        "time_s,north_m,east_m,heading_true_north_deg,surge_velocity_mps,sway_velocity_mps,yaw_rate_degps,"
-        "rudder_angle_deg,propeller_rate_rpm,wave_height_significant_m"
-    )
-    np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt="%.6f")
-    return str(path)
 
 
 @pytest.fixture(scope="module")
 def voyages(tmp_path_factory):
     folder = tmp_path_factory.mktemp("voyages")
-    return [sailed(folder / f"v{seed}.csv", seed) for seed in (1, 2)]
+    return [straight_with_a_turn(folder / f"v{seed}.csv", seed) for seed in (1, 2)]
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +69,7 @@ def test_a_voyage_given_twice_is_refused(voyages):
 
 def test_voyages_without_a_steady_stretch_are_one_line_and_no_file(tmp_path, capsys):
     path = tmp_path / "short.csv"
-    sailed(path, 3)
+    straight_with_a_turn(path, 3)
     path.write_text("\n".join(path.read_text().splitlines()[:150]) + "\n")  # 15 s
     out = tmp_path / "boat.toml"
     assert cli.main(["tube", str(path), "--ship", "usv", "-o", str(out)]) == DataError.exit_code

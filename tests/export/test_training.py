@@ -21,6 +21,7 @@ from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live.learning import residual as live  # noqa: E402
 from twin.physics.state import Situation  # noqa: E402
+from twin.report.training_page import training_page  # noqa: E402
 from twin.study.reference.sailed import Sailed  # noqa: E402
 from twin.study.track.track import track  # noqa: E402
 
@@ -44,6 +45,20 @@ def test_it_says_that_a_planted_weakness_was_worth_learning(learned):
     assert learned[1]["held_out"]["worth_having"] and "is worth having" in learned[1]["verdict"]
     errors = learned[1]["held_out"]["position_mae_m"]
     assert errors["with_residual"] < 0.7 * errors["physics"]
+
+
+def test_its_page_shows_the_curves_the_proof_by_horizon_and_the_bound(learned):
+    """Expected: a point for each epoch; with the residual the place is better at every horizon; the bound is the
+    manifest's."""
+    result = learned[1]
+    assert [row[0] for row in result["curve"]] == ["acceleration"] * 3 + ["rollout"] * 2
+    leads = result["held_out"]["by_horizon"]
+    assert [r["horizon_s"] for r in leads] == sorted(r["horizon_s"] for r in leads) and len(leads) >= 2
+    assert all(r["position_m"]["with_residual"] < r["position_m"]["physics"] for r in leads)
+    table = json.loads(learned[0].with_suffix(".json").read_text())
+    assert result["bounds"].items() <= table.items() and "curve" not in table["training"]
+    page = training_page(result)
+    assert page.count("<polyline") == 4 and result["verdict"][1:] in page
 
 
 def test_torch_and_onnx_runtime_agree_to_1e_6(learned):

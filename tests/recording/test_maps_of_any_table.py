@@ -5,10 +5,12 @@ import tomllib
 import numpy as np
 import pytest
 
-from twin.errors import SettingsError
+from twin.errors import DataError, SettingsError
 from twin.recording.cells import without_deviation
+from twin.recording.columns_seen import columns_seen
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
+from twin.recording.sheet import find_separator
 from twin.recording.suggest_map import suggestion
 
 ROWS = 40
@@ -168,3 +170,36 @@ def test_an_easting_beside_a_longitude_is_no_position():
     entries = {"latitude_deg": "lat", "longitude_deg": "lon", "east_m": {"column": "lon", "sign": -1}}
     with pytest.raises(SettingsError, match="belongs to longitude_deg"):
         parse_map({"columns": entries}, "m")
+
+
+@pytest.mark.parametrize(
+    ("line", "separator"),
+    [
+        ("Time;N;E", ";"),
+        ("0,00000;-0,01116;1,5e-3;;7,2", ";"),
+        ("0,0\t1,5\t2,5\t-3,1", "\t"),
+        ("0.5,1.5;2.5,3.5,4", ","),  # commas that are those of no decimal
+        ("a,b,c;d", ","),
+        ("1.0 2.0", " "),
+    ],
+)
+def test_the_separator_is_not_the_comma_of_a_decimal(line, separator):
+    assert find_separator(line) == separator
+
+
+def test_a_header_above_decimal_commas_is_no_line_to_be_skipped(tmp_path):
+    """Test: one semicolon fewer than decimal commas in a row, and rows with gaps. Expected: the names are found."""
+    rows = [f"{k},5;{k},25;;{k},75" if k % 3 else f"{k},5;;;" for k in range(60)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["Time;Heading;Rudder;RPM", *rows]) + "\n")
+    seen = columns_seen(path)
+    assert seen.names == ["Time", "Heading", "Rudder", "RPM"] and seen.layout == {}
+    assert seen.numbers("Heading")[1] == 1.25
+
+
+def test_a_table_without_names_is_one_line_with_what_to_do(tmp_path):
+    path = tmp_path / "bare.csv"
+    path.write_text("\n".join(f"{k},5;{k},25;{k},75" for k in range(60)) + "\n")
+    with pytest.raises(DataError, match="line 1 has numbers where the names of the 3 columns should be") as e:
+        columns_seen(path)
+    assert "header = false" in str(e.value) and "\n" not in str(e.value)

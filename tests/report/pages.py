@@ -1,16 +1,21 @@
 """Every kind of page that a verb or a result writes, made of little: what stands on it is made up here, how it is
 written is not."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import twin
 from bench.bundled import FOLDER
-from twin import report
+from tests.report.boat import straight_with_a_turn
+from twin import cli, report
 from twin.api.calibration import Calibration
 from twin.api.fleet import Fleet
 from twin.api.instruments import InstrumentCheck
 from twin.api.tube import TubeCalibration
 from twin.physics.model import Model
+from twin.recording.write import write_voyage
+from twin.report.history_page import history_page
+from twin.report.training_page import training_page
 from twin.studio.project import Project
 from twin.studio.project_report import page as project_page
 
@@ -95,6 +100,66 @@ def fleet():
     return Fleet(data=data | {"voyages": voyages, "over_months": asked})
 
 
+def added(name, before, after, **more):
+    """A step of a ship's history as `twin add` writes it."""
+    errors = [
+        {"horizon_s": h, "before_m": before * h / 60, "after_m": after * h / 60, "noise_floor_m": 2.0}
+        | {"before_deg": 0.5, "after_deg": 0.25}
+        for h in (10.0, 60.0)
+    ]
+    files = {"voyages": [DATED | {"name": "monday"}], "held_out": [{"name": "tuesday", "part": "last third"}]}
+    proof = {"log_likelihood_ratio": 19.9, "low95": 15.3, "high95": 24.7, "needed": 3.0}
+    step = {"date": "2026-05-01", "added": [name], "errors": errors, "proof": "held-out voyages"}
+    return step | files | {"evidence": proof, "forced": False} | more
+
+
+def with_history(ship):
+    """The ship as calibrated in April, and one thing added, taken out again, and another one forced in."""
+    calibrated = {"date": "2026-04-01", "voyages": [{"name": "calm", "sha256": ""}]}
+    calibrated |= {"held_out": [{"horizon_s": 60.0, "position_m": 1.5, "heading_deg": 0.1, "windows": 9}]}
+    steps = [
+        added("Current", 21.0, 6.0, of_this_voyage=["Current"]),
+        {"date": "2026-05-02", "removed": ["Current"]},
+        added("Wind", 20.0, 20.0, date="2026-05-03", forced=True),
+    ]
+    return replace(ship, notes=dict(ship.notes) | {"structural": calibrated, "history": steps})
+
+
+def training():
+    """The JSON of `twin train`."""
+    pair = {"physics": 4.0, "with_residual": 1.0}
+    curve = [["acceleration", k, 1.0 / (k + 1), 2.0 / (k + 1)] for k in range(5)]
+    limits = {"force_scale": {"X_N": 2e6, "Y_N": 2e6, "N_Nm": 6e8}, "output_bound": 0.5}
+    leads = [{"horizon_s": h, "position_m": pair, "heading_deg": pair} for h in (10.0, 60.0, 120.0)]
+    held = {"windows": 22, "blocks": 4, "position_ratio_95": [0.2, 0.3], "by_horizon": leads}
+    return {
+        "ship": "Alma",
+        "verdict": "the residual is worth having",
+        "held_out": held | {"worth_having": True},
+        "learned_share": 0.07,
+        "seeds": [42, 123],
+        "seed": 123,
+        "seconds": 9.7,
+        "curve": curve + [["rollout", k, 0.1, 0.2] for k in range(3)],
+        "bounds": limits | {"inputs": [{"name": "surge", "low": -0.1, "high": 1.2, "unit": "-"}]},
+        "parts": {"train": ["monday 0"], "validation": ["monday 1"], "test": ["monday 2"]},
+        "voyages": [{"name": "monday", "start_time_utc": "2026-05-01T08:00:00Z", "sha256": "ab" * 32}],
+        "written": True,
+        "forced": False,
+    }
+
+
+def replay(folder: Path):
+    """What `twin replay` writes of a boat whose ship file promises a tube."""
+    folder.mkdir()
+    first, other = (straight_with_a_turn(folder / f"v{seed}.csv", seed) for seed in (1, 2))
+    boat, log = str(folder / "boat.toml"), str(folder / "log.mcap")
+    assert cli.main(["tube", first, other, "--ship", "usv", "-o", boat]) == 0
+    write_voyage(twin.read_voyage(first), log)
+    assert cli.main(["replay", log, "--ship", boat, "--report", str(folder / "replay.html")]) == 0
+    return (folder / "replay.html").read_text()
+
+
 def project(folder: Path):
     folder.mkdir()
     Project(folder).take_demo()
@@ -142,5 +207,8 @@ def made(folder, track, model, ship):
         twin.simulate(ship, duration_s=300.0),
     ):
         found.write_page(folder / f"{type(found).__name__}.html")
+    (folder / "history.html").write_text(history_page(with_history(ship)))
+    (folder / "training.html").write_text(training_page(training()))
+    (folder / "replay.html").write_text(replay(folder / "boat"))
     (folder / "project.html").write_text(project(folder / "project"))
     return {path.stem: path for path in sorted(folder.glob("*.html"))}

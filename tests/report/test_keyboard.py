@@ -17,6 +17,7 @@ from twin.api.result import Result
 from twin.physics.effects import find
 from twin.physics.model import Model
 
+OF_VERBS = ("history", "project", "replay", "training")  # pages that no class of results has
 KINDS = (
     "Calibration",
     "Comparison",
@@ -29,7 +30,7 @@ KINDS = (
     "TubeCalibration",
     "Update",
     "VoyageCheck",
-    "project",
+    *OF_VERBS,
 )
 WITH_PLOTS = ("Comparison", "Diagnosis", "Update")
 PICTURES = os.environ.get("REPORT_PICTURES")
@@ -107,7 +108,7 @@ def test_no_kind_of_page_is_forgotten(every):
     """Expected: each class of results that has a page, and the page of a project."""
     for module in pkgutil.iter_modules(twin.api.__path__):
         importlib.import_module(f"twin.api.{module.name}")
-    kinds = {c.__name__ for c in Result.__subclasses__()} | {"project"}
+    kinds = {c.__name__ for c in Result.__subclasses__()} | set(OF_VERBS)
     assert kinds == set(KINDS) == set(every)
 
 
@@ -199,7 +200,7 @@ def test_the_keys_do_on_the_plots_what_the_mouse_does(page, every, kind):
     assert page.value("document.activeElement.getAttribute('aria-pressed')") == "true"
 
 
-@pytest.mark.parametrize("kind", [k for k in KINDS if k in (*WITH_PLOTS, "Fleet", "project")])
+@pytest.mark.parametrize("kind", [k for k in KINDS if k in (*WITH_PLOTS, "Fleet", "project", "replay")])
 def test_buttons_are_pressed_by_enter_and_by_the_space_bar_and_keep_the_focus(page, every, kind):
     opened(page, every[kind])
     shown = "document.documentElement.dataset.theme"
@@ -247,3 +248,22 @@ def test_a_page_fits_a_phone_and_paper(page, every, kind):
     page.value("dispatchEvent(new Event('afterprint'))")
     page.ask("Emulation.setEmulatedMedia", media="screen")
     assert found[0] == [] and found[1] == 0 and found[2] <= 794
+
+
+@pytest.mark.parametrize("kind", (*WITH_PLOTS, "replay"))
+def test_what_is_drawn_is_not_squeezed_on_paper(page, every, kind):
+    """Test: printed from a window of 1400 px. Expected: each drawing is as high for its width as it was drawn, for a
+    page that is about as wide as paper."""
+    opened(page, every[kind], 1400)
+    page.value("dispatchEvent(new Event('beforeprint'))")
+    assert page.value("document.querySelector('main').clientWidth") == 720
+    page.ask("Emulation.setEmulatedMedia", media="print")
+    drawn = page.value(
+        "[...document.querySelectorAll('main canvas')].filter((e) => e.checkVisibility())"
+        ".map((e) => [e.width / e.height, e.clientWidth / e.clientHeight])"
+    )
+    page.ask("Emulation.setEmulatedMedia", media="")
+    page.value("dispatchEvent(new Event('afterprint'))")
+    assert len(drawn) > 8
+    for made, shown in drawn:
+        assert shown == pytest.approx(made, rel=0.03)

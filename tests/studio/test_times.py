@@ -29,6 +29,12 @@ FRAMES = """(async () => { const frame = () => new Promise(requestAnimationFrame
   const start = performance.now(); let count = 0;
   while (performance.now() - start < 3000) { scrollBy(0, 12); await frame(); count += 1; }
   return count / ((performance.now() - start) / 1000); })()"""
+PAN = """(async () => { const frame = () => new Promise(requestAnimationFrame), by = (name) => document.querySelector(`[aria-label="${name}"]`);
+  by('Show less time').scrollIntoView(); for (let i = 0; i < 3; i++) by('Show less time').click();
+  await frame(); await frame();
+  const start = performance.now(); let count = 0;
+  while (performance.now() - start < 3000) { by(count++ % 16 < 8 ? 'Later' : 'Earlier').click(); await frame(); }
+  return count / ((performance.now() - start) / 1000); })()"""
 WEIGHT = """[...performance.getEntriesByType('resource'), ...performance.getEntriesByType('navigation')]
   .filter((e) => !e.name.includes('/api/')).reduce((sum, e) => sum + e.decodedBodySize, 0) / 1000"""
 
@@ -86,6 +92,10 @@ def measured(tab, served, hour):
     before = worked_s(page)
     found["frames_per_s"] = page.value(FRAMES)
     found["frame_processor_s"] = (worked_s(page) - before) / (3.0 * found["frames_per_s"])
+    before = worked_s(page)
+    found["pan_frames_per_s"] = page.value(PAN)
+    found["pan_frame_processor_s"] = (worked_s(page) - before) / (3.0 * found["pan_frames_per_s"])
+    found["load"] = os.getloadavg()[0]
     found = {k: round(v, 4) for k, v in found.items()}
     if path := os.environ.get("STUDIO_TIMES"):
         with open(path, "w") as file:
@@ -98,9 +108,14 @@ def test_the_page_weighs_what_is_wanted(measured):
 
 
 def test_an_hour_takes_the_pages_thread_about_as_long_as_is_wanted(measured):
-    """Twice as long at most: what works beside it takes the caches, too."""
-    assert 0.0 < measured["hour_shown_processor_s"] <= 2.0 * WANTED["hour_shown_s"]
+    assert 0.0 < measured["hour_shown_processor_s"] <= WANTED["hour_shown_s"]
 
 
 def test_a_frame_of_scrolling_leaves_room_for_fifty_in_a_second(measured):
     assert 0.0 < measured["frame_processor_s"] <= 1.0 / WANTED["frames_per_s"]
+
+
+def test_a_frame_of_a_moving_time_axis_is_not_far_from_fifty_in_a_second(measured):
+    """All plots eight times enlarged and moved by half of what they show, each frame; twice as long at most: without a
+    graphics card a third of it is the drawing of canvases."""
+    assert 0.0 < measured["pan_frame_processor_s"] <= 2.0 / WANTED["frames_per_s"]

@@ -2,18 +2,30 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Result
+from twin.api.simulation import simulate
 from twin.errors import UsageError, did_you_mean
-from twin.num import as_given
+from twin.num import as_given, num
 from twin.physics.actuators import Actuator
 from twin.physics.ship import Ship
 from twin.study.first_model.first_estimate import OPTIONS, Given
 from twin.study.first_model.first_estimate import first_model as estimated
-from twin.study.first_model.first_trial import doubts, sea_trial, summary
+from twin.study.first_model.first_trial import IMO, doubts, sea_trial, summary
+
+if TYPE_CHECKING:
+    from twin.report.curves import Curves
 
 SCHEMA_VERSION = 1
+FIGURES = {  # figure of the sea trial -> what it is called, its unit
+    "shaft_speed_rpm": ("shaft speed at service speed", "rpm"),
+    "power": ("power at service speed, share of full", ""),
+    "service_speed_mps": ("service speed", "m/s"),
+    **{key: (words, unit) for key, words, unit, _ in IMO},
+    "speed_left": ("share of the speed that is left in the turn", ""),
+    "straight_line_stability": ("straight-line stability (above zero: goes straight by itself)", ""),
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,20 +60,57 @@ class FirstModel(Result):
         ]
 
     def page(self) -> str:
-        """What it does in the standard manoeuvres, and every number with its source."""
+        """What it does in the standard manoeuvres, beside the IMO's limits, and every number with its
+        source."""
         from twin.report.result_page import PageTable, result_page
 
-        trial = [{"figure": k, "value": v} for k, v in self.trial.items()]
         columns = {"section": "section", "name": "number", "value": "value", "source": "source"}
+        sources = [{"short": k, "long": v} for k, v in self.ship.notes.get("sources", {}).items()]
         return result_page(
             f"{self.ship.name}: a first model",
             f"{self.ship.name}: a first model from its main particulars.",
             self.warnings,
             (
-                PageTable("Sea trial of this model", {"figure": "figure", "value": "value"}, trial),
+                PageTable(
+                    "Sea trial of this model",
+                    {"is": "figure", "value": "value", "limit": "IMO"},
+                    self._figures(),
+                ),
+                *self._manoeuvres(),
                 PageTable("Numbers", columns, self._rows()),
+                PageTable("Sources", {"short": "short", "long": "source"}, sources),
             ),
         )
+
+    def _figures(self) -> list[dict[str, Any]]:
+        """The sea trial in words, with units, and the limits of MSC.137(76)."""
+        limits = {key: f"at most {as_given(limit)} {unit}" for key, _, unit, limit in IMO}
+        return [
+            {"is": FIGURES.get(key, (key, ""))[0], "value": _of(value, key), "limit": limits.get(key)}
+            for key, value in self.trial.items()
+        ]
+
+    def _manoeuvres(self) -> list["Curves"]:
+        """Turning circle in ship lengths, and the heading in the zigzag."""
+        from twin.report.curves import Curve, Curves
+
+        length_s = float(self.ship.L_pp / self.ship.U_0)
+        circle = simulate(self.ship, manoeuvre="circle_35", duration_s=14.0 * length_s).data["columns"]
+        turned = simulate(self.ship, manoeuvre="zigzag_20", duration_s=25.0 * length_s).data["columns"]
+        L, every = float(self.ship.L_pp), slice(None, None, 4)
+        way = [(e / L, n / L) for e, n in zip(circle["east_m"], circle["north_m"], strict=True)][every]
+        headings = [(h + 180.0) % 360.0 - 180.0 for h in turned["heading_true_north_deg"]]
+        swing = list(zip(turned["time_s"], headings, strict=True))[every]
+        return [
+            Curves(
+                "Turning circle, rudder 35 deg to starboard",
+                "to starboard [ship lengths]",
+                "ahead [ship lengths]",
+                [Curve("track", "--model", way)],
+                even=True,
+            ),
+            Curves("Zigzag 20/20", "time [s]", "heading [deg]", [Curve("heading", "--model", swing)]),
+        ]
 
     def __repr__(self) -> str:
         return (
@@ -100,3 +149,7 @@ def first_model(
         "warnings": warnings + doubts(trial, ship.C_b),
     }
     return FirstModel(ship, given, data=said)
+
+
+def _of(value: float | None, key: str) -> str:
+    return "none" if value is None else f"{num(value, 3)} {FIGURES.get(key, ('', ''))[1]}".strip()

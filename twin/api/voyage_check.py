@@ -5,15 +5,21 @@ import os
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.api.result import PathLike, Result
+from twin.num import as_given
 from twin.physics.ship import Ship
 from twin.recording.checks import Check
 from twin.recording.formats.choose import sources_of
 from twin.recording.import_voyage import Imported, checked, import_voyage, refusal, summary
 from twin.recording.suggest_map import suggestion
 from twin.recording.voyage import Voyage
+
+if TYPE_CHECKING:
+    from twin.report.curves import Drawings
+
+WORDS = ("mistake", "look", "content")  # what a check says of a voyage, the worst first
 
 
 @dataclass(frozen=True, repr=False)
@@ -44,18 +50,51 @@ class VoyageCheck(Result):
         return self.data["data_checks"]
 
     def page(self) -> str:
-        """What each check has seen."""
+        """What each check has seen, and every channel over time."""
         from twin.report.result_page import PageTable, result_page
 
         wrong = ", ".join(self.refused())
         said = f"{wrong}: a sign, unit or frame is wrong." if wrong else "No check proves a mistake."
-        rows = [{"name": c.name, "ok": c.ok, "unusable": c.unusable, "text": c.text} for c in self.checks]
-        columns = {"name": "check", "ok": "content", "unusable": "mistake", "text": "what it saw"}
-        return result_page(self.voyage.name, said, parts=(PageTable("Checks", columns, rows),))
+        rows = [{"name": c.name, "said": _said(c), "text": c.text} for c in self.checks]
+        rows.sort(key=lambda row: WORDS.index(row["said"]))
+        v, derived = self.voyage, dict(self.data.get("derived", {}))
+        found = [{"name": name, "from": text} for name, text in derived.items()]
+        facts = [
+            f"{v.name}: {len(v)} rows, {as_given(v.duration_s, 5)} s, a row each {as_given(v.step_s)} s.",
+            *([f"Not recorded: {', '.join(v.absent())}."] if v.absent() else []),
+            *map(str, self.data.get("notes", ())),
+        ]
+        return result_page(
+            v.name,
+            said,
+            facts,
+            (
+                PageTable("Checks", {"name": "check", "said": "says", "text": "what it saw"}, rows),
+                PageTable("Found from other channels", {"name": "channel", "from": "from"}, found),
+                _channels(v),
+            ),
+        )
 
     def __repr__(self) -> str:
         wrong = ", ".join(self.refused()) or "no mistake proved"
         return f"<VoyageCheck of {self.voyage.name!r}: {len(self.checks)} checks, {wrong}>"
+
+
+def _said(check: Check) -> str:
+    return WORDS[0] if check.unusable else WORDS[2] if check.ok else WORDS[1]
+
+
+def _channels(voyage: Voyage) -> "Drawings":
+    """A small drawing of each channel that was recorded."""
+    from twin.report.curves import LOW, Curve, Curves, Drawings, thinned
+
+    t = voyage.time_s - voyage.time_s[0]
+    names = [name for name in voyage.columns if voyage.has(name)]
+    each = [
+        Curves(name, "", "", [Curve("recorded", "--measured", thinned(t, voyage[name]))], high=LOW)
+        for name in names
+    ]
+    return Drawings("Channels over time [s]", each)
 
 
 def check_voyage(ship: Ship | None, voyage: Voyage) -> VoyageCheck:

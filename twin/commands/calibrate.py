@@ -7,7 +7,7 @@ import sys
 from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands import arguments
-from twin.commands.verb_output import lines_to, progress
+from twin.commands.verb_output import files, lines_to, progress
 from twin.errors import ThresholdError
 from twin.physics.ship import load
 from twin.recording.ship_file_writer import save
@@ -31,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.more_voyages(parser, "--held-out", "voyages on which the error is measured")
     arguments.force(parser)
     arguments.as_json(parser)
+    arguments.report(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -40,9 +41,8 @@ def run(args: argparse.Namespace) -> int:
     found = of_sailed(ship, every, read_all(args.held_out, ship, progress), progress)
     if found.accepted:
         save(found.ship, args.output, args.ship)
-    if args.json:
-        written = str(args.output) if found.accepted else None
-        whole.write_json(found.to_dict() | {"output": written}, args.json)
+    written = str(args.output) if found.accepted else None
+    files(args, found.with_keys(output=written), lines_to(args))
     if not found.accepted:
         print("\n".join(found.text()), file=sys.stderr)
         raise ThresholdError(f"{found.refused} {args.output} was not written.")

@@ -13,6 +13,7 @@ from twin.study.update.ladder import SCHEMA_VERSION, ladder, terminal_lines
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("ship", metavar="SHIP.toml")
     arguments.as_json(parser, "the same as JSON ('-': standard output)")
+    arguments.report(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -32,5 +33,10 @@ def run(args: argparse.Namespace) -> int:
         )
     page = lines_to(args)
     print("\n".join(terminal_lines(ship)), file=page)
+    if args.report:
+        from twin.report.history_page import history_page
+
+        whole.write(args.report, history_page(ship), "--report")
+        print(f"wrote {args.report}", file=page)
     print(f"next: twin compare VOYAGE.mcap --ship {args.ship}", file=page)
     return 0

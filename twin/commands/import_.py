@@ -7,7 +7,7 @@ from twin import whole
 from twin.api.voyage_check import import_file, suggest_map
 from twin.commands import arguments
 from twin.commands.next_command import after_import, after_map
-from twin.commands.verb_output import lines_to, progress
+from twin.commands.verb_output import files, lines_to, progress
 from twin.errors import DataError, UsageError
 from twin.recording.import_voyage import known_checks
 from twin.recording.write import write_voyage
@@ -31,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.repeated(parser, "--accept", "CHECK", "import although CHECK refuses")
     arguments.flag(parser, "--every-check", "what each check saw, those that are quiet too")
     arguments.as_json(parser)
+    arguments.report(parser)
     checked = "the checked voyage (with --suggest-map: the map)"
     arguments.output(parser, "VOYAGE.mcap", checked, required=False)
 
@@ -52,8 +53,7 @@ def run(args: argparse.Namespace) -> int:
     print("\n".join(found.text(args.every_check)), file=page)
     if not refused:
         write_voyage(found.voyage, args.output)
-    if args.json:
-        whole.write_json(found.to_dict() | {"output": None if refused else str(args.output)}, args.json)
+    files(args, found.with_keys(output=None if refused else str(args.output)), page)
     if refused:
         raise DataError(found.refusal(args.file[0], args.accept, args.map))
     print(f"wrote {args.output}\nnext: {after_import(args.output, args.ship)}", file=page)

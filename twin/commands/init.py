@@ -7,7 +7,7 @@ from pathlib import Path
 from twin import whole
 from twin.api.first_model import first_model
 from twin.commands import arguments
-from twin.commands.verb_output import lines_to
+from twin.commands.verb_output import files, lines_to
 from twin.num import as_given
 from twin.physics.ship import load_actuators, save
 from twin.study.first_model.first_estimate import OPTIONS, REQUIRED
@@ -28,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.output(parser, "SHIP.toml", "the ship file to write")
     arguments.force(parser)
     arguments.as_json(parser, "the same as JSON; - is standard output")
+    arguments.report(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -42,6 +43,5 @@ def run(args: argparse.Namespace) -> int:
     said = [*made.text(), "", f"written: {args.output}"]
     said += [f"next:    twin import each reference voyage, then {calibrate}"]
     print("\n".join(said), file=lines_to(args))
-    if args.json:
-        whole.write_json(made.to_dict() | {"file": str(args.output)}, args.json)
+    files(args, made.with_keys(file=str(args.output)), lines_to(args))
     return 0

@@ -23,6 +23,7 @@ from twin.live.paced import PacedClock, Player
 from twin.live.prediction.coverage import Coverage
 from twin.live.provenance import REPLAY, identity, provenance
 from twin.live.publish import Publisher
+from twin.live.replay_record import ReplayRecord, without_numbers
 from twin.live.signals.config import Settings
 from twin.live.tube_kept import TubeKept
 from twin.num import num
@@ -62,9 +63,11 @@ def replay(
     realtime: bool = False,
     bus: Bus | None = None,
     player: Player | None = None,
+    record: ReplayRecord | None = None,
 ) -> Summary:
     """The voyage through a new loop; `output` is written whole or not at all. On a `bus` the twin speaks as
-    if it were live, at the `player`'s pace; of a voyage that is ended there, what was sailed is summed up."""
+    if it were live, at the `player`'s pace; of a voyage that is ended there, what was sailed is summed up.
+    `record` takes what a page shows of it."""
     played = PlayedLog(log, settings["loop.rate_hz"])
     batches = played.batches()
     with ExitStack() as stack:
@@ -78,14 +81,22 @@ def replay(
         loop.publisher.identity = identity(loop.ship, REPLAY)
         if file:
             file.describe(PROVENANCE, provenance(settings, loop.ship))
+        if record:
+            record.provenance = provenance(settings, loop.ship)
         waiting: list[Batch] = []
         times = _instants(batches, waiting)
         clock = PacedClock(times, player) if player else ReplayClock(times, 1.0 if realtime else 0.0)
-        return _sailed(loop, ears, played, clock, waiting, file)
+        return _sailed(loop, ears, played, clock, waiting, file, record)
 
 
 def _sailed(
-    loop: Loop, ears: Played, played: PlayedLog, clock: Clock, waiting: list[Batch], file: LogFile | None
+    loop: Loop,
+    ears: Played,
+    played: PlayedLog,
+    clock: Clock,
+    waiting: list[Batch],
+    file: LogFile | None,
+    record: ReplayRecord | None,
 ) -> Summary:
     modes: Counter[str] = Counter()
     reasons: Counter[str] = Counter()
@@ -101,8 +112,10 @@ def _sailed(
         tick = loop.tick(instant)
         foresight.look(instant.time_s)
         kept.look(instant.time_s)
+        if record:
+            record.look(loop, tick)
         modes[tick.mode] += 1
-        reasons.update(_without_numbers(reason) for reason in tick.reasons)
+        reasons.update(without_numbers(reason) for reason in tick.reasons)
         first_s, last_s = instant.time_s if first_s is None else first_s, instant.time_s
         if instant.number % PROGRESS == PROGRESS - 1:
             print(f"{played.path.name}: {instant.time_s - first_s:.0f} s of the voyage", file=sys.stderr)
@@ -129,10 +142,6 @@ def _instants(batches: Any, waiting: list[Batch]) -> Any:
     for batch in batches:
         waiting.append(batch)
         yield batch.time_s, max(batch.wall_s, 0.0)
-
-
-def _without_numbers(reason: str) -> str:
-    return reason.partition(", for ")[0].partition(" = ")[0]
 
 
 def summary_lines(s: Summary) -> list[str]:

@@ -11,12 +11,17 @@ from twin.live.keelson.zenoh_bus import ZenohBus
 from twin.live.keelson.zenoh_config import BusSettings
 from twin.live.log_replay import Summary, replay
 from twin.live.paced import FASTEST, KEYS, SLOWEST, Player
+from twin.live.replay_record import ReplayRecord
 from twin.live.signals.config import Settings
 from twin.num import as_given
 
 
 def replay_onto_bus(
-    log: str | Path, settings: Settings, output: str | Path | None = None, speed: float = 1.0
+    log: str | Path,
+    settings: Settings,
+    output: str | Path | None = None,
+    speed: float = 1.0,
+    record: ReplayRecord | None = None,
 ) -> Summary:
     """The voyage on the bus of these settings; TwinError when that bus cannot be opened now. UsageError: a
     speed that is out of range."""
@@ -32,7 +37,7 @@ def replay_onto_bus(
         if alarm:
             _say(alarm)
         with Player(speed, _say).attended() as player:
-            return replay(log, settings, output, bus=bus, player=player)
+            return replay(log, settings, output, bus=bus, player=player, record=record)
 
 
 def _say(text: str) -> None:

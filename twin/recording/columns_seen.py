@@ -1,5 +1,6 @@
 """A table as it is looked at before there is a map: its names, and some thousands of its rows."""
 
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
@@ -12,7 +13,7 @@ from twin.errors import DataError
 from twin.recording.formats import recognised
 from twin.recording.headers import is_number
 from twin.recording.mapping import Layout
-from twin.recording.sheet import Sheet, open_text
+from twin.recording.sheet import Sheet, find_separator, open_text
 from twin.recording.table import EMPTY
 
 ROWS = 6000  # rows that are looked at
@@ -77,12 +78,20 @@ def first_pieces(pieces: Any, names: list[str]) -> dict[str, Any]:
 
 
 def of_text(path: Path) -> SeenColumns:
-    """A text table: lines above the column names are skipped, a line of units under them too."""
+    """A text table: lines above the column names are skipped, a line of units under them too. DataError: it
+    has numbers where its columns' names should be."""
     skip = lines_above(path)
     with open_text(path, None) as stream:
         sheet = Sheet(path, stream, Layout(skip_lines=skip))
         names = sheet.names
         rows = [row for _, row in islice(sheet.rows(), ROWS)]
+    if names and all(is_number(name) for name in names if name):
+        raise DataError(
+            f"{path}: line {skip + 1} has numbers where the names of the {len(names)} columns should be "
+            f"({', '.join(names)[:60]}). Write a line of names above it, in the same order and with the same "
+            "separator, such as time_s, heading_deg, rudder_deg, rpm; or give a map with header = false and "
+            "columns by number (--map)."
+        )
     layout: dict[str, Any] = {"skip_lines": skip} if skip else {}
     if rows and not any(is_number(c) for c in rows[0]):
         layout["skip_after_header"] = 1
@@ -96,7 +105,9 @@ def lines_above(path: Path) -> int:
     number."""
     with open_text(path, None) as stream:
         lines = list(islice(stream, 200))
-    counts = [max(line.count(s) for s in ",;\t|") for line in lines]
+    found = Counter(find_separator(line) for line in lines[len(lines) // 2 :] if line.strip())
+    separator = found.most_common(1)[0][0] if found else " "
+    counts = [line.count(separator) if separator != " " else 0 for line in lines]
     usual = int(np.median(counts[len(counts) // 2 :])) if counts else 0
     if usual == 0:
         return 0

@@ -1,6 +1,7 @@
 """An open text file: its encoding and separator found, its column names, and its rows as cells."""
 
 import csv
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from io import TextIOWrapper
@@ -12,6 +13,7 @@ from twin.errors import DataError, SettingsError
 from twin.recording.formats.lines import Unpacked, opened
 from twin.recording.mapping import SEPARATORS, Key, Layout
 
+DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d*(?:[eE][-+]?\d+)?")
 Row = tuple[int, list[str]]  # line in the file, cells
 
 
@@ -89,10 +91,19 @@ def cells(line: str, layout: Layout) -> list[str]:
 
 
 def find_separator(line: str) -> str:
-    """The separator that occurs most in the first line; white space when there is none."""
+    """The separator that occurs most in the first line, where commas are not those of decimals; white space
+    when there is none."""
     counts = {s: line.count(s) for s in (";", "\t", ",", "|")}
     best = max(counts, key=lambda s: counts[s])
+    if best == ",":
+        others = (s for s in (";", "\t", "|") if counts[s])
+        best = next((s for s in others if all(map(_one_cell, line.split(s)))), best)
     return best if counts[best] else " "
+
+
+def _one_cell(text: str) -> bool:
+    """Whether a comma in it is at most that of a decimal."""
+    return "," not in text or DECIMAL_COMMA.fullmatch(text.strip()) is not None
 
 
 def head_of(path: Path) -> bytes:

@@ -61,12 +61,12 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
-/** What is printed is printed for light paper. */
+/** What is printed is printed for light paper, and drawn as wide as paper is: a canvas that was drawn for a screen would be squeezed. */
 function printedLight(redrawn) {
-  const theme = document.documentElement.dataset;
-  let shown = theme.theme;
-  addEventListener("beforeprint", () => { shown = theme.theme; theme.theme = "light"; redrawn(); });
-  addEventListener("afterprint", () => { theme.theme = shown; redrawn(); });
+  const root = document.documentElement;
+  let shown = root.dataset.theme;
+  addEventListener("beforeprint", () => { shown = root.dataset.theme; root.dataset.theme = "light"; root.classList.add("paper"); redrawn(); });
+  addEventListener("afterprint", () => { root.dataset.theme = shown; root.classList.remove("paper"); redrawn(); });
 }
 
 /** A command with a button that copies it. */

@@ -19,7 +19,8 @@ from twin.study.reference.sailed import switched_off
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
-SCRIPTS = ("number.js", "dom.js", "plot.js", "keys.js", "track.js", "sections.js", "diagnosis.js", "main.js")
+PLOTS = ("number.js", "dom.js", "plot.js", "keys.js", "track.js", "sections.js", "voyage.js")
+SCRIPTS = (*PLOTS, "diagnosis.js", "main.js")
 FLEET = ("number.js", "dom.js", "fleet.js")  # of many ships: a table, and a small plot of each
 
 

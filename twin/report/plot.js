@@ -1,5 +1,5 @@
 // Plots over time: one zoom for all of them; a pixel column shows the least and the greatest of its samples.
-const view = { voyage: 0, from: 0, to: 1, panels: [], watchers: [] };
+const view = { voyage: 0, from: 0, to: 1, panels: [], watchers: [], frame: 0 };
 
 function setZoom(from, to) {
   const v = DATA.voyages[view.voyage], least = 2;
@@ -12,10 +12,29 @@ function setZoom(from, to) {
   redraw();
 }
 
+/** What is on the screen is drawn with the next frame, once however often it was asked for; the rest when it comes near. */
 function redraw() {
-  for (const panel of view.panels) panel.draw();
+  if (!view.frame) view.frame = requestAnimationFrame(() => {
+    view.frame = 0;
+    for (const panel of view.panels) if (panel.near === false) panel.stale = true; else panel.draw();
+    for (const watcher of view.watchers) watcher();
+  });
+}
+
+/** Everything, now: for paper. */
+function drawAll() {
+  for (const panel of view.panels) { panel.draw(); panel.stale = false; }
   for (const watcher of view.watchers) watcher();
 }
+
+const nearby = new IntersectionObserver((seen) => {
+  for (const one of seen) {
+    const panel = view.panels.find((p) => p.box === one.target);
+    if (!panel) { nearby.unobserve(one.target); continue; }
+    panel.near = one.isIntersecting;
+    if (panel.near && panel.stale) { panel.draw(); panel.stale = false; }
+  }
+}, { rootMargin: "150px" });
 
 /** First index with t[i] >= x. */
 function lower(t, x) {
@@ -28,7 +47,7 @@ function lower(t, x) {
 function sheet(height, label) {
   const canvas = el("canvas", { role: "img", "aria-label": label, style: { height: `${height}px` } });
   const start = () => {
-    const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
+    const ratio = document.documentElement.classList.contains("paper") ? 2 : window.devicePixelRatio || 1, width = canvas.clientWidth;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
     const pen = canvas.getContext("2d");
@@ -77,6 +96,16 @@ function line(pen, { t, y }, X, Y, from, to, gap, breaks) {
   pen.stroke();
 }
 
+/** A band between two lines; what changes within a pixel is thinned. */
+function ribbon(pen, { t, low, high }, X, Y, from, to) {
+  const a = Math.max(lower(t, from) - 1, 0), b = Math.min(lower(t, to) + 1, t.length), every = Math.max(1, Math.floor((b - a) / (2 * pen.canvas.clientWidth)));
+  pen.beginPath();
+  for (let i = a; i < b; i += every) pen.lineTo(X(t[i]), Y(high[i]));
+  for (let i = a + every * Math.floor((b - 1 - a) / every); i >= a; i -= every) pen.lineTo(X(t[i]), Y(low[i]));
+  pen.fillStyle = colour("noise"); pen.globalAlpha = 0.2;
+  pen.fill(); pen.globalAlpha = 1;
+}
+
 /** Round steps for an axis. */
 function steps(low, high, count) {
   const raw = (high - low) / count || 1, power = 10 ** Math.floor(Math.log10(raw));
@@ -102,15 +131,17 @@ function plot(height, series, options = {}) {
   const [canvas, start] = sheet(height, options.label), cursor = el(".cursor"), picked = el(".picked");
   const box = el(".draw", null, canvas, cursor, picked);
   const seconds = (px) => view.from + ((px - LEFT) / Math.max(canvas.clientWidth - LEFT, 1)) * (view.to - view.from);
-  const panel = { cursor, picked, seconds, draw() { paint(start, series, options); } };
+  const panel = { box, cursor, picked, seconds, draw() { paint(start, series, options); } };
   steer(box, canvas, picked, seconds);
   view.panels.push(panel);
+  nearby.observe(box);
   return box;
 }
 
 function paint(start, series, options) {
   const [pen, width, height] = start(), { from, to } = view, inner = height - 8;
-  let [low, high] = extent(series.map((s) => s.data), from, to);
+  const tube = options.tube, edges = tube ? [{ t: tube.t, y: tube.low }, { t: tube.t, y: tube.high }] : [];
+  let [low, high] = extent([...series.map((s) => s.data), ...edges], from, to);
   if (!(low <= high)) [low, high] = [-1, 1];
   if (options.band) { const most = Math.max(-low, high, 2.5 * options.band); [low, high] = [-most, most]; }
   const pad = 0.06 * (high - low) || Math.max(Math.abs(high) * 0.02, options.least || 0.01);
@@ -123,6 +154,7 @@ function paint(start, series, options) {
     pen.fillRect(LEFT, Y(options.band), width - LEFT, Y(-options.band) - Y(options.band)); pen.globalAlpha = 1;
   }
   pen.save(); pen.beginPath(); pen.rect(LEFT, 0, width - LEFT, height); pen.clip();
+  if (tube) ribbon(pen, tube, X, Y, from, to);
   for (const s of series) {
     pen.strokeStyle = colour(s.colour); pen.lineWidth = s.width || 1.2; pen.globalAlpha = s.alpha || 1; pen.lineJoin = "round";
     line(pen, s.data, X, Y, from, to, s.gap || 15, s.breaks);

@@ -62,7 +62,7 @@ def drawn(
 ) -> dict[str, Any]:
     """Everything the page shows of one voyage; `models`: by the name of their line."""
     lines = {name: stitched(track, model, longest_s) for name, model in models.items()}
-    times, inputs = _Times(), []
+    times, inputs = Times(), []
     grid = times.place(track.t)
     begun = next(iter(lines.values()))[1]
     channels = [
@@ -85,7 +85,7 @@ def drawn(
     }
 
 
-class _Times:
+class Times:
     """Time bases, each packed once and spoken of by number."""
 
     def __init__(self) -> None:
@@ -93,6 +93,7 @@ class _Times:
         self._known: dict[bytes, int] = {}
 
     def place(self, t: np.ndarray) -> int:
+        """The number of a time base (N,) [s]."""
         key = t.astype("<f4").tobytes()
         if key not in self._known:
             self._known[key] = len(self.packed)
@@ -100,7 +101,7 @@ class _Times:
         return self._known[key]
 
     def series(self, t: np.ndarray, y: np.ndarray) -> dict[str, Any]:
-        """Only the samples that are there."""
+        """Only the samples that are there; t (N,) [s], y (N,) in whatever unit it has."""
         there = np.isfinite(y)
         return {"t": self.place(t[there]), "y": packed(y[there])}
 
@@ -112,7 +113,7 @@ def _reading(
     w: Windows,
     structural: bool,
     voyage: Voyage | None,
-    times: _Times,
+    times: Times,
     grid: int,
 ) -> dict[str, Any] | None:
     name, k = list(MEASURED.values())[i], 180.0 / np.pi if READINGS[i] in ANGLES else 1.0
@@ -144,7 +145,7 @@ def _raw(voyage: Voyage, name: str, track: Track) -> tuple[np.ndarray, np.ndarra
     return t[keep], (voyage.si(name) / BY_NAME[name].to_si)[keep]
 
 
-def _inputs(track: Track, voyage: Voyage | None, times: _Times, grid: int) -> list[dict[str, Any]]:
+def _inputs(track: Track, voyage: Voyage | None, times: Times, grid: int) -> list[dict[str, Any]]:
     """What was recorded beside the motion: controls and weather."""
     if voyage is not None:
         names = [n for n in BY_NAME if n not in MEASURED.values() and n in voyage.columns and voyage.has(n)]

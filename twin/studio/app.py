@@ -23,7 +23,7 @@ from twin.studio import trials
 from twin.studio.answers import difference
 from twin.studio.jobs import SHOWN, Jobs
 from twin.studio.live import Live
-from twin.studio.project import Project
+from twin.studio.project import Project, unchanged
 from twin.studio.project_report import page
 from twin.studio.remedies import edited
 from twin.studio.replies import Do, answered, body_of, page_files, toml_name
@@ -214,6 +214,7 @@ class Studio:
             f["name"] == name and f["kind"] == "map" for f in self.project.listing()
         ):
             raise SettingsError(f"{name}: is there already and is no map. Choose another name.")
+        unchanged(path, said.get("base"))
         self._write_map(path, str(said.get("text", "")))
         return {"name": name}
 
@@ -223,6 +224,7 @@ class Studio:
         name, text, edit = toml_name(said.get("name")), str(said.get("text", "")), said.get("edit")
         if not isinstance(edit, dict):
             raise UsageError("a remedy says which entries of the map it changes.")
+        unchanged(self.project.path(name), text)
         try:
             self._write_map(self.project.path(name), edited(text, edit))
         except (ValueError, KeyError, TypeError) as error:

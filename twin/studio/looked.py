@@ -11,15 +11,18 @@ from twin import whole
 from twin.errors import TwinError
 from twin.physics.ship import load
 from twin.recording.checks import run_checks
+from twin.recording.columns_seen import columns_seen
 from twin.recording.formats import recognised
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import parse_map
-from twin.recording.mapping import Map
+from twin.recording.mapping import NAMES, Map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_map import suggestion
+from twin.recording.units import UNITS, unit_of
 from twin.recording.voyage import Voyage
 from twin.studio.remedies import channels_of, remedies_of
 
+MOST_CHOICES = 60  # columns that are offered
 MOST_SAMPLES = 200_000  # of a channel that a page is given; of longer ones every so-manieth
 
 
@@ -35,6 +38,7 @@ def looked(folder: Path, file: str, map_name: str | None, ship: str | None, job:
         told["map_text"] = text
         table = parse_map(tomllib.loads(text), map_name or "the proposed map") if text else None
         told["entries"] = _entries(table)
+        told |= _choices(path, table) if table else {}
         voyage = read_voyage(path, table)
     except (TwinError, tomllib.TOMLDecodeError) as error:
         told["problem"] = str(error).replace(f"{folder}/", "")
@@ -67,6 +71,30 @@ def _entries(table: Map | None) -> list[dict[str, Any]]:
         }
         for channel, c in table.columns.items()
     ]
+
+
+def _choices(path: Path, table: Map) -> dict[str, Any]:
+    """The columns that no channel takes, with their values, and what a column may be: channel -> units."""
+    used = {part for c in table.columns.values() for part in (*c.parts, c.hemisphere)}
+    time = table.time.column if table.time else None
+    used |= {*(time if isinstance(time, tuple) else (time,))}
+    kind = recognised(path)
+    if kind is not None and kind.series is not None:
+        return {}
+    seen = columns_seen(path)
+    free = [name for name in seen.names if name not in used and seen.has_numbers(name)]
+    return {
+        "unused": [{"column": name} | _range(seen.numbers(name)) for name in free[:MOST_CHOICES]],
+        "channels": {name: list(UNITS.get(unit_of(name), {})) for name in NAMES},
+    }
+
+
+def _range(x: np.ndarray) -> dict[str, float]:
+    """Least and greatest of what is a number."""
+    there = x[np.isfinite(x)]
+    return (
+        {"low": float(there.min()), "high": float(there.max())} if there.size else {"low": 0.0, "high": 0.0}
+    )
 
 
 def _of_voyage(voyage: Voyage, ship: Any, job: Path) -> dict[str, Any]:

@@ -117,3 +117,13 @@ def kind_of(path: Path) -> str:
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError):
         return "settings"
     return "ship" if "particulars" in tables else "map" if "columns" in tables else "settings"
+
+
+def unchanged(path: Path, base: Any) -> None:
+    """SettingsError when the map on the disk is not the one that a page began with: what another page, or
+    another program, wrote meanwhile is not lost."""
+    if base is not None and path.exists() and path.read_text(encoding="utf-8") != base:
+        raise SettingsError(
+            f"{path.name}: was changed meanwhile, in another window or by another program. Look at the file "
+            "again, and then change the map."
+        )

@@ -49,6 +49,9 @@ ASSIGNED = re.compile(
 )
 TIME = re.compile(r'\[time\] (rebuild|unit) = ("[^"]*"|true|[\d.]+)')
 FOR = re.compile(r" for ([a-z_ ]+?)(?: \(|[.,;]|$)")
+VERDICT = re.compile(
+    r"^# cannot be imported by it yet: .*\n", re.MULTILINE
+)  # no longer true of what is edited
 SWAP = "swap their columns"
 Edit = dict[str, Any]  # channel ("time" for [time]) -> keys to write; "swap": two channels
 
@@ -114,8 +117,10 @@ def _value(text: str) -> Any:
 
 
 def edited(text: str, edit: Edit) -> str:
-    """The map with an edit made; what a check asks for counts from what the map says already."""
+    """The map with an edit made; what a check asks for counts from what the map says already. A channel that
+    the map lacks is taken from the column that the edit names."""
     data = tomllib.loads(text)
+    text = VERDICT.sub("", text)
     if "swap" in edit:
         one, other = edit["swap"]
         data["columns"][one], data["columns"][other] = data["columns"][other], data["columns"][one]
@@ -126,6 +131,8 @@ def edited(text: str, edit: Edit) -> str:
                 text = _time(text, key, value)
         elif channel != "swap" and channel in data.get("columns", {}):
             text = _line(text, channel, _with(data["columns"][channel], keys))
+        elif channel in NAMES and "column" in keys:
+            text = text.replace("[columns]\n", f"[columns]\n{channel} = {toml(dict(keys))}\n", 1)
     return text
 
 

@@ -15,8 +15,8 @@ from twin.physics.ship import Derivatives, Ship
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
 from twin.study.first_model.first_estimate import OPTIONS, REQUIRED, first_model
+from twin.study.first_model.first_trial import IMO, sea_trial
 from twin.study.first_model.first_trial import doubts as careful
-from twin.study.first_model.first_trial import sea_trial
 from twin.study.update.ladder import ladder
 
 UNITS = ("kgm2", "kg-m3", "mps", "rpm", "m2", "kg", "m")  # that the name of an option ends in
@@ -24,11 +24,6 @@ SHOWN = {"kgm2": "kg m2", "kg-m3": "kg/m3", "mps": "m/s", "rpm": "1/min"}
 WORDS = {"x-g": "centre of gravity ahead of midship", "rho": "density of the water", "length-pp": "length pp"}
 HELD_OVER = 0.6  # of the largest rudder angle: a rudder held over
 LONGEST_S = 3600.0
-IMO = (  # MSC.137(76): figure, what it is called, its unit, its limit
-    ("advance_L", "advance of the turning circle", "L", 4.5),
-    ("tactical_diameter_L", "tactical diameter", "L", 5.0),
-    ("overshoot_20_20_deg", "first overshoot of the 20/20 zigzag", "deg", 25.0),
-)
 
 
 def form() -> list[dict[str, Any]]:

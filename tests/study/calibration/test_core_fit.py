@@ -27,9 +27,11 @@ def calibrated(voyages, tmp_path_factory):
     for name in ("calm", "calm too", "nothing"):
         paths[name] = folder / f"{name.replace(' ', '-')}.mcap"
         write_voyage(voyages[name], paths[name])
-    out, said = folder / "better.toml", folder / "said.json"
+    out, said, page = folder / "better.toml", folder / "said.json", folder / "page.html"
     words = ["calibrate", str(paths["calm"]), str(paths["calm too"]), "--held-out", str(paths["nothing"])]
-    assert cli.main([*words, "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]) == 0
+    asked = ["--ship", "kvlcc2", "-o", str(out), "--json", str(said), "--report", str(page)]
+    assert cli.main([*words, *asked]) == 0
+    assert "predicted better" in page.read_text() and "kappa" in page.read_text()
     return load(out), json.loads(said.read_text())
 
 

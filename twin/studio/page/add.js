@@ -8,14 +8,14 @@ import { chart } from "/app/draw.js";
 import { seriesCard } from "/app/compare.js";
 import { timeView } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
-import { answerOf, earlier, foot, go, kept, nextName, pickVoyages, theShip } from "/app/shared.js";
+import { answerOf, earlier, foot, go, kept, lacks, nextName, pickVoyages, theShip } from "/app/shared.js";
 
 let effects = null;
 
 export async function add(r) {
   effects ??= await ask("/api/effects");
   prefill(r);
-  const out = [el("h1", null, "Add an effect, and watch the error fall"), asker(r.item)];
+  const out = [el("h1", null, "Add an effect, and watch the error fall"), lacks(), asker(r.item)];
   if (!r.item) return out;
   const a = await answerOf(r.item);
   return a.waiting ? [...out, a.waiting] : [...out, ...answer(a)];
@@ -40,7 +40,7 @@ function asker(item) {
   const run = () => start({ verb: "add", ship: state.kept["add.ship"], effects: [...chosen], voyages: [...v.set], held_outs: [...held.set].filter((n) => !v.set.has(n)), output: output.value });
   return el("section.card", { "aria-label": "What to add" }, first.length ? boxes("effects to add", "effect", first.map((e) => [e.name, `${e.name}: ${e.doc}`]), chosen) : null,
     el("details", { open: !first.length }, el("summary", null, first.length ? "Other effects" : "Choose effects"), boxes("the catalogue", "other", rest.map((e) => [e.name, e.name]), chosen, () => again())),
-    el("form", null, ship.select, v.box, held.box, field("new ship file", output), go("Add and prove", run, !ship.name)), earlier("add", "add", item, address));
+    el("form", null, ship.select, v.box, held.box, field("new ship file", output), go("Add and prove", run, !ship.name)), earlier("add", "add", item));
 }
 
 function answer(a) {

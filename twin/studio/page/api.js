@@ -18,7 +18,7 @@ export async function reload() {
   state.jobs = state.project.jobs;
 }
 
-const cache = new Map(), last = { job: "", all: null };
+const cache = new Map(), last = { job: "", all: null }; // the samples seen last
 
 /** A JSON file of a job that is over: it never changes. */
 export async function found(job, file = "result.json") {
@@ -29,10 +29,11 @@ export async function found(job, file = "result.json") {
 
 /** The samples of a file that was looked at: {time_s, channel: Float32Array}. */
 export async function samples(job, looked) {
-  if (last.job !== job) { last.all = new Float32Array(await (await fetch(`/api/jobs/${job}/series.f32`)).arrayBuffer()); last.job = job; }
-  const all = last.all;
+  if (last.job === job) return last.all;
+  const all = new Float32Array(await (await fetch(`/api/jobs/${job}/series.f32`)).arrayBuffer());
   const row = (i) => all.subarray(i * looked.samples, (i + 1) * looked.samples), out = { time_s: row(0) };
   looked.columns.forEach((c, i) => { out[c.name] = row(i + 1); });
+  Object.assign(last, { job, all: out });
   return out;
 }
 

@@ -7,10 +7,10 @@ import { chart, whiskers } from "/app/draw.js";
 import { diff } from "/app/add.js";
 import { ask } from "/app/api.js";
 import { kept as saved } from "/app/save.js";
-import { answerOf, earlier, foot, go, nextName, pickVoyages, theShip } from "/app/shared.js";
+import { answerOf, earlier, foot, go, lacks, nextName, pickVoyages, theShip } from "/app/shared.js";
 
 export async function calibrate(r) {
-  const out = [el("h1", null, "Calibrate the core to reference voyages"), asker(r.item)];
+  const out = [el("h1", null, "Calibrate the core to reference voyages"), lacks(), asker(r.item)];
   if (!r.item) return out;
   const a = await answerOf(r.item);
   return a.waiting ? [...out, a.waiting] : [...out, ...(await answer(a))];
@@ -20,7 +20,7 @@ function asker(item) {
   const ship = theShip("calibrate"), v = pickVoyages("reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded", "calibrate.voyages", ["reference"]), held = pickVoyages("measured on (none: the last third of each)", "calibrate.held", ["nothing"]);
   const output = el("input", { type: "text", id: "calibrate-output", value: nextName(ship.name || "ship.toml", "-calibrated") });
   const run = () => start({ verb: "calibrate", ship: state.kept["calibrate.ship"], voyages: [...v.set], held_outs: [...held.set].filter((n) => !v.set.has(n)), output: output.value });
-  return el("section.card", { "aria-label": "What to calibrate" }, el("p.note", null, "Three reference voyages at least, six are better: zigzags, circles, changes of speed."), el("form", null, ship.select, v.box, held.box, field("calibrated ship file", output), go("Calibrate", run, !ship.name)), earlier("calibrate", "calibrate", item, address));
+  return el("section.card", { "aria-label": "What to calibrate" }, el("p.note", null, "Three reference voyages at least, six are better: zigzags, circles, changes of speed."), el("form", null, ship.select, v.box, held.box, field("calibrated ship file", output), go("Calibrate", run, !ship.name)), earlier("calibrate", "calibrate", item));
 }
 
 async function answer(a) {

@@ -6,13 +6,13 @@ import { asGiven, num } from "/app/number.js";
 import { chart, heatStrip, ways } from "/app/draw.js";
 import { timePlot, timeView, zoomer } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
-import { answerOf, earlier, foot, go, kept, pickVoyages, theShip } from "/app/shared.js";
+import { answerOf, earlier, foot, go, kept, lacks, pickVoyages, theShip } from "/app/shared.js";
 
 export const LOOKS = ["c-model", "c-second", "c-third", "c-wrong"];
 const CAUSE = "speed squared [kn2]";
 
 export async function compare(r) {
-  const out = [el("h1", null, "Compare the model with measurements"), asker(r.item)];
+  const out = [el("h1", null, "Compare the model with measurements"), lacks(), asker(r.item)];
   if (!r.item) return out;
   const names = r.item.split("+"), all = await Promise.all(names.map(answerOf)), done = all.filter((a) => a.result);
   out.push(all.filter((a) => a.waiting).map((a) => a.waiting));
@@ -25,7 +25,7 @@ function asker(item) {
   const asked = () => start({ verb: "compare", ship: state.kept["compare.ship"], voyages: [...v.set] });
   const open = new Set(item ? item.split("+") : []);
   const stack = jobs.length > 1 ? el("fieldset", null, el("legend", null, "on top of each other"), jobs.map((j) => el("label", null, el("input", { type: "checkbox", id: `on-${j.name}`, checked: open.has(j.name), onchange: (e) => { e.target.checked ? open.add(j.name) : open.delete(j.name); location.hash = address("compare", [...open].join("+")); } }), label(j)))) : null;
-  return el("section.card", { "aria-label": "What to compare" }, el("form", null, ship.select, v.box, go("Compare", asked, !ship.name)), stack, earlier("compare", "compare", item, address));
+  return el("section.card", { "aria-label": "What to compare" }, el("form", null, ship.select, v.box, go("Compare", asked, !ship.name)), stack, earlier("compare", "compare", item));
 }
 
 export const label = (job) => `${job.asked.ship.replace(/\.toml$/, "")} on ${(job.asked.voyages || []).map((v) => v.replace(/\.mcap$/, "")).join(", ")}`;

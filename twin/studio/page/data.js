@@ -19,7 +19,15 @@ function overview() {
     f.kind === "voyage" ? tagger(f) : "", el("a", { href: `/api/files/${encodeURIComponent(f.name)}`, download: f.name, "aria-label": `Save ${f.name}` }, "save")]);
   return [el("h1", null, "Data"), dropper(),
     rows.length ? card("Files of this project", table("Plain files in the project's folder; the command line reads and writes the same", ["file", "what it is", ["size"], "kept for", "copy"], rows))
-      : card("Nothing here yet", el("p", null, "Drop a log or a table above, or begin with the tanker that comes with the twin: calibrated on calm voyages, it sails badly on Monday."), button("Copy the demo voyages here", doing(async () => { await ask("/api/demo", {}); await again(); }), { class: "main", id: "demo", disabled: state.project.read_only })), rows.length ? report() : null];
+      : card("Nothing here yet", el("p", null, "Drop a log or a table above, or begin with the tanker that comes with the twin: calibrated on calm voyages, it sails badly on Monday."), button("Copy the demo voyages here", doing(async () => { await ask("/api/demo", {}); await again(); }), { class: "main", id: "demo", disabled: state.project.read_only })), rows.length ? next() : null, rows.length ? report() : null];
+}
+
+/** The step after this one, while the project is young. */
+function next() {
+  const done = (verb) => state.jobs.some((j) => j.verb === verb && j.state === "done"), raw = files("data").filter((f) => !files("voyage").some((v) => v.name === `${f.name.replace(/\.[^.]+$/, "")}.mcap`))[0];
+  const [part, item, words] = !files("voyage").length && raw ? ["data", raw.name, `Look at ${raw.name}, mend what is doubted, and import it`] : !files("ship").length ? ["ship", "new", "Make a first model of the ship from its main particulars"]
+    : !files("voyage").length ? [] : !done("compare") ? ["compare", "", "Compare the model with a voyage: how wrong is it, and where?"] : !done("diagnose") && !done("calibrate") ? ["calibrate", "", "Calibrate the model to voyages on which nothing was wrong, or go on to Diagnose"] : [];
+  return part ? card("Next", el("p", null, el("a", { href: address(part, item), id: "next" }, words), ".")) : null;
 }
 
 const report = () => card("The project on one page", el("p.note", null, "Ship, voyages, error before and now, diagnosis and history as they stand, in one file that opens anywhere."), el(".tools", null, el("a.button", { href: "/api/report", download: "project.html", id: "report" }, "Save as one page")), command("twin studio . --report project.html"));
@@ -66,7 +74,7 @@ async function looked(name) {
   const { job, waiting, result } = await answerOf(fresh.name);
   if (waiting) return [title, waiting];
   const view = timeView(), x = result.samples ? await samples(job.name, result) : null;
-  return [title, head(file, result), result.problem ? problem(result) : null, x ? checks(result, x, view, name) : null, mapCard(result, x, name), x ? channels(result, x, view) : null, file.kind === "voyage" ? null : importer(name, result, map)];
+  return [title, head(file, result), result.problem ? problem(result) : null, x ? checks(result, x, view, name) : null, mapCard(result, x, name), x ? channels(result, x, view) : null, file.kind === "voyage" || (result.problem && !result.map_text) ? null : importer(name, result, map)];
 }
 
 function head(file, k) {
@@ -75,7 +83,8 @@ function head(file, k) {
     k.absent?.length ? el("details", null, el("summary", null, `${k.absent.length} channels are absent`), el("p.note", null, k.absent.map((c) => named(c)[0]).join(", "))) : null);
 }
 
-const problem = (k) => card("It cannot be read by this map yet", el("p.big.bad", null, k.problem), el("p.note", null, "Correct the map below and save it; the file is then read again."));
+/** Why it cannot be read: by the map that stands below, or as a file, which is then to be corrected where it is from and dropped again. */
+const problem = (k) => [card(k.map_text ? "It cannot be read by this map yet" : "It cannot be read yet", el("p.big.bad", null, k.problem), el("p.note", null, k.map_text ? "Correct the map below and save it; the file is then read again." : "Correct the file in the program that it is from, in an editor or in a spreadsheet, and drop it here again under the same name.")), k.map_text ? null : dropper()];
 
 /** What the checks doubt, beside the channels it is about, with the remedies. */
 function checks(k, x, view, name) {
@@ -100,9 +109,34 @@ function mapCard(k, x, name) {
   const text = el("textarea", { id: "map-text", rows: Math.min(24, k.map_text.split("\n").length + 1), "aria-label": "The map as text", spellcheck: "false" });
   text.value = k.map_text;
   const seen = (c) => { const s = k.columns.find((o) => o.name === c); return s ? `${asGiven(s.low, 4)} to ${asGiven(s.high, 4)} ${named(c)[1]}` : ""; };
-  const rows = (k.entries || []).map((e) => [named(e.channel)[0], e.column, [e.unit, e.sign < 0 ? "other sign" : "", e.offset ? `offset ${num(e.offset)}` : "", e.frame].filter(Boolean).join(", ") || "as it is", seen(e.channel)]);
-  return card("The map: which column is what", rows.length ? table(k.map ? `As ${k.map} says` : "Proposed from names, units, ranges and motion; nothing is written yet", ["channel", "column of the file", "read as", "values"], rows) : null,
-    el("details", { open: !!k.problem }, el("summary", null, "The map as text"), text, el(".tools", null, button(`Save as ${mapOf(name)}`, doing(async () => { await ask("/api/maps", { name: mapOf(name), text: text.value }); await again(); }), { id: "save-map", disabled: state.project.read_only }))));
+  const rows = (k.entries || []).map((e) => [named(e.channel)[0], e.column, [unitOf(k, e, name),  e.sign < 0 ? "other sign" : "", e.offset ? `offset ${num(e.offset)}` : "", e.frame].filter(Boolean).map((part, i) => (i ? [" ", part] : part)), seen(e.channel)]);
+  return card("The map: which column is what", rows.length ? table(k.map ? `As ${k.map} says` : "Proposed from names, units, ranges and motion; nothing is written yet", ["channel", "column of the file", "read as", "values"], rows) : null, taker(k, name),
+    el("details", { open: !!k.problem }, el("summary", null, "The map as text"), text, el(".tools", null, button(`Save as ${mapOf(name)}`, doing(async () => { await ask("/api/maps", { name: mapOf(name), text: text.value, base: k.map ? k.map_text : undefined }); await again(); }), { id: "save-map", disabled: state.project.read_only }))));
+}
+
+const write = (k, name, edit) => doing(async () => { await ask("/api/remedy", { name: mapOf(name), text: k.map_text, edit: edit() }); await again(); });
+
+/** The unit that a column is in, to be chosen anew. */
+function unitOf(k, e, name) {
+  const units = k.channels?.[e.channel] || [], own = e.unit || units[0];
+  if (state.project.read_only || units.length < 2 || !units.includes(own)) return e.unit || "as it is";
+  const select = choose(`unit-${e.channel}`, units.map((u) => [u, u]), own, (u) => write(k, name, () => ({ [e.channel]: { unit: u } }))());
+  select.setAttribute("aria-label", `Unit of ${named(e.channel)[0]} in the file`);
+  return select;
+}
+
+/** Columns that no channel takes: what each is can be said here. */
+function taker(k, name) {
+  const free = k.unused || [], left = Object.keys(k.channels || {}).filter((c) => !k.entries.some((e) => e.channel === c));
+  if (!free.length || state.project.read_only) return null;
+  const row = (column, i) => {
+    const unit = choose(`take-unit-${i}`, [["", "unit"]], ""), what = choose(`take-${i}`, [["", "not used"], ...left.map((c) => [c, named(c)[0]])], "", (c) => { unit.replaceChildren(...(k.channels[c] || []).map((u) => el("option", { value: u }, u))); });
+    what.setAttribute("aria-label", `What ${column.column} is`);
+    unit.setAttribute("aria-label", `Unit of ${column.column}`);
+    const take = write(k, name, () => ({ [what.value]: { column: column.column, ...(unit.value ? { unit: unit.value } : {}) } }));
+    return [column.column, `${asGiven(column.low, 4)} to ${asGiven(column.high, 4)}`, what, unit, button("Take it", (e) => { if (what.value) take(e); else what.focus(); }, { class: "small", "aria-label": `Take ${column.column}` })];
+  };
+  return el("details", { open: !!k.problem }, el("summary", null, `${free.length} columns are not used`), table("What else the file holds: say what a column is, and it is read", ["column of the file", "values", "it is", "in", ""], free.map(row)));
 }
 
 function importer(name, k, map) {

@@ -7,13 +7,13 @@ import { unpack } from "/app/api.js";
 import { forcesCard, heatOf, seriesCard } from "/app/compare.js";
 import { timeView } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
-import { answerOf, earlier, foot, go, pickVoyages, theShip } from "/app/shared.js";
+import { answerOf, earlier, foot, go, lacks, pickVoyages, theShip } from "/app/shared.js";
 
 const VERDICTS = { missing: ["bad", "something is missing"], nothing_missing: ["good", "nothing is missing"], unknown: ["fair", "something unknown"], undecided: ["fair", "these voyages cannot decide"] };
 const READING = { north_m: "x", east_m: "y", heading_true_north_deg: "psi", surge_velocity_mps: "u", sway_velocity_mps: "v", yaw_rate_degps: "r", surge_velocity_through_water_mps: "u_r", sway_velocity_through_water_mps: "v_r" };
 
 export async function diagnose(r) {
-  const out = [el("h1", null, "Which physical effect is missing?"), asker(r.item)];
+  const out = [el("h1", null, "Which physical effect is missing?"), lacks(), asker(r.item)];
   if (!r.item) return out;
   const a = await answerOf(r.item);
   if (a.waiting) return [...out, a.waiting];
@@ -23,7 +23,7 @@ export async function diagnose(r) {
 function asker(item) {
   const ship = theShip("diagnose"), v = pickVoyages("voyages", "diagnose.voyages", ["voyage"]), ref = pickVoyages("reference voyages (nothing was wrong)", "diagnose.references", ["reference"]);
   const asked = () => start({ verb: "diagnose", ship: state.kept["diagnose.ship"], voyages: [...v.set], references: [...ref.set].filter((n) => !v.set.has(n)) });
-  return el("section.card", { "aria-label": "What to diagnose" }, el("form", null, ship.select, v.box, ref.box, go("Diagnose", asked, !ship.name)), earlier("diagnose", "diagnose", item, address));
+  return el("section.card", { "aria-label": "What to diagnose" }, el("form", null, ship.select, v.box, ref.box, go("Diagnose", asked, !ship.name)), earlier("diagnose", "diagnose", item));
 }
 
 function answer(a, r) {

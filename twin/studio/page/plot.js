@@ -4,10 +4,11 @@ import { change, route } from "/app/api.js";
 import { button, el, svg } from "/app/dom.js";
 import { asGiven, num } from "/app/number.js";
 import { ticks } from "/app/draw.js";
+import { joined, spread, torn } from "/app/lines.js";
 import { keepers } from "/app/save.js";
 
 /* global uPlot */
-const plots = new Set();
+const plots = new Set(), DENSE = 4; // samples to a pixel from which a line is drawn thin
 const look = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name.split(" ")[0].replace("c-", "")}`).trim();
 
 /** The zoom of this page: from and to [s], null when everything is shown. */
@@ -15,11 +16,20 @@ export function timeView() {
   const q = route().query, at = (k) => (q.get(k) === null || Number.isNaN(Number(q.get(k))) ? null : Number(q.get(k)));
   const view = { from: at("from"), to: at("to"), ends: [Infinity, -Infinity], watchers: [] };
   if (view.from === null || view.to === null || view.to <= view.from) view.from = view.to = null;
+  let waiting = 0, address = 0;
+  const resting = [];
   view.watch = (f) => view.watchers.push(f);
+  view.rested = (f) => resting.push(f);
   view.set = (from, to) => {
     [view.from, view.to] = from === null || to - from < 0.5 ? [null, null] : [Math.max(from, view.ends[0]), Math.min(to, view.ends[1])];
-    change({ from: view.from === null ? "" : view.from.toFixed(2), to: view.to === null ? "" : view.to.toFixed(2) }, true);
-    for (const f of view.watchers) f();
+    if (!waiting) waiting = requestAnimationFrame(() => { waiting = 0; for (const f of view.watchers) f(); }); // one redraw a frame
+    clearTimeout(address);
+    const here = location.hash.split("?")[0];
+    address = setTimeout(() => { // when it rests: its address, and the plots that are near the screen
+      if (location.hash.split("?")[0] !== here) return;
+      change({ from: view.from === null ? "" : view.from.toFixed(2), to: view.to === null ? "" : view.to.toFixed(2) }, true);
+      for (const f of resting) f();
+    }, 120);
   };
   view.range = () => (view.from === null ? view.ends : [view.from, view.to]);
   return view;
@@ -41,21 +51,17 @@ export function timePlot(title, lines, options) {
   if (data[0].length) { view.ends[0] = Math.min(view.ends[0], data[0][0]); view.ends[1] = Math.max(view.ends[1], data[0].at(-1)); }
   const words = `${title}${options.unit ? ` [${options.unit}]` : ""}`;
   box.setAttribute("role", "img");
-  box.setAttribute("aria-label", `${words} over time. ${lines.map((l) => `${l.name} ${spread(l.y)}`).join("; ")}`);
-  const self = { plot: null, near: false, width: 0, stale: true, paint(always) { if (always || (self.near && (self.stale || self.width !== Math.floor(box.clientWidth)))) paint(self, box, data, lines, options, view, readout); } };
+  box.setAttribute("aria-label", `${words} over time. ${lines.map((l) => `${l.name} ${spread(l)}`).join("; ")}`);
+  const self = { plot: null, near: false, seen: false, width: 0, stale: true, paint(always) { if (always || (self.near && (self.stale || self.width !== Math.floor(box.clientWidth)))) paint(self, box, data, lines, options, view, readout); } };
   box.style.minHeight = `${options.height || 170}px`;
   plots.add(self);
   new ResizeObserver(() => { if (!box.isConnected) { self.plot?.destroy(); plots.delete(self); } else self.paint(); }).observe(box);
   new IntersectionObserver((seen) => { self.near = seen.at(-1).isIntersecting; self.paint(); }, { rootMargin: "400px" }).observe(box); // far below it waits
-  view.watch(() => { if (self.near && self.plot) self.plot.setScale("x", { min: view.range()[0], max: view.range()[1] }); else self.stale = true; });
+  new IntersectionObserver((seen) => { self.seen = seen.at(-1).isIntersecting; if (self.stale) self.paint(); }).observe(box);
+  view.watch(() => { if (self.seen && self.plot) self.plot.setScale("x", { min: view.range()[0], max: view.range()[1] }); else self.stale = true; });
+  view.rested(() => { if (self.stale) self.paint(); });
   const rows = () => [["time_s", ...lines.map((l) => l.name)], ...Array.from(data[0], (t, i) => [t, ...data.slice(1).map((y) => y[i])])];
   return el("figure", null, el("figcaption", null, el("b", null, words), legend, keepers(title, () => drawn(title, data, lines, options, view), rows)), box, readout);
-}
-
-function spread(y) {
-  let low = Infinity, high = -Infinity;
-  for (const v of y) if (v === v) { if (v < low) low = v; if (v > high) high = v; }
-  return low <= high ? `${num(low)} to ${num(high)}` : "nothing";
 }
 
 function paint(self, box, data, lines, options, view, readout) {
@@ -70,7 +76,7 @@ function paint(self, box, data, lines, options, view, readout) {
     width, height: options.height || 170, legend: { show: false }, pxAlign: false, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, y: false },
     scales: { x: { time: false, min: from, max: to }, y: { range: options.band ? (u, low, high) => { const m = Math.max(Math.abs(low), Math.abs(high), 2.5 * options.band); return [-m, m]; } : (u, low, high) => uPlot.rangeNum(low ?? 0, high ?? 1, 0.08, true) } },
     axes: [{ ...axis, size: 30, space: 70, values: (u, v) => v.map((x) => `${asGiven(x, 6)}`) }, { ...axis, size: 56, space: 26, values: (u, v) => v.map((x) => asGiven(x, 4)) }],
-    series: [{}, ...lines.map((l) => ({ stroke: look(l.look), width: l.width || 1.6, dash: l.look.includes("dashed") ? [7, 5] : l.look.includes("dots") ? [2, 4] : undefined, points: { show: false }, spanGaps: false }))],
+    series: [{}, ...lines.map((l) => ({ stroke: look(l.look), width: l.width || (data[0].length > DENSE * width ? 1 : 1.6), dash: l.look.includes("dashed") ? [7, 5] : l.look.includes("dots") ? [2, 4] : undefined, points: { show: false }, spanGaps: false, ...(data.holes?.length ? { gaps: torn(data.holes) } : {}) }))],
     hooks: {
       setSelect: [(u) => { if (u.select.width > 4) { view.set(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x")); u.setSelect({ width: 0, height: 0 }, false); } }],
       setCursor: [(u) => { readout.textContent = told(u, data, lines, options); }],
@@ -86,27 +92,6 @@ function told(u, data, lines, options) {
   const at = (k) => { for (let d = 0; d < 40; d++) for (const j of [i - d, i + d]) { const v = data[k + 1][j]; if (v === v && v !== null && v !== undefined) return v; } return null; };
   const first = at(0);
   return `${asGiven(data[0][i], 6)} s: ${lines.map((l, k) => { const v = at(k); return `${l.name} ${asGiven(v, 5)}${k && first !== null && v !== null && options.compared ? ` (${v - first >= 0 ? "+" : "−"}${num(Math.abs(v - first), 3)})` : ""}`; }).join(" · ")} ${options.unit || ""}`;
-}
-
-/** One table of all times: [t, y of each line], NaN shown as a gap, and nothing where a line has no sample. */
-export function joined(lines) {
-  const own = lines.map((l) => cut(l));
-  if (own.every((l) => l.t === own[0].t)) return [own[0].t, ...own.map((l) => (l.y.some?.((v) => v !== v) ? Array.from(l.y, (v) => (v === v ? v : null)) : l.y))];
-  const part = own.map((l) => [l.t, Array.from(l.y, (v) => (v === v ? v : null))]);
-  return uPlot.join(part, part.map(() => [0, 2]));
-}
-
-/** A line that begins anew at some moments: a gap is put before each. */
-function cut(l) {
-  if (!l.gaps?.length) return l;
-  const t = [], y = [];
-  let k = 0;
-  for (let i = 0; i < l.t.length; i++) {
-    while (k < l.gaps.length && l.gaps[k] < l.t[i] - 1e-3) { if (t.length) { t.push(t.at(-1) + 1e-4 * (k + 1)); y.push(NaN); } k++; }
-    if (t.length && l.t[i] <= t.at(-1)) continue;
-    t.push(l.t[i]); y.push(l.y[i]);
-  }
-  return { ...l, t, y };
 }
 
 /** The same as a drawing, to be saved. */
@@ -132,4 +117,7 @@ function drawn(title, data, lines, options, view) {
 
 /** All plots in new colours. */
 export function repaint() { for (const p of plots) { p.stale = true; p.paint(); } }
-window.addEventListener("beforeprint", () => { for (const p of plots) p.paint(true); });
+
+const paper = document.documentElement.classList; // the page is as wide as paper is while it is drawn for it
+window.addEventListener("beforeprint", () => { paper.add("paper"); for (const p of plots) p.paint(true); });
+window.addEventListener("afterprint", () => { paper.remove("paper"); repaint(); });

@@ -1,6 +1,6 @@
 // What several parts need: the voyages and the ship to choose, a job's state, what became of it.
 
-import { ask, files, found, newest, over, state } from "/app/api.js";
+import { address, ask, files, found, newest, over, state } from "/app/api.js";
 import { again, doing } from "/app/main.js";
 import { boxes, button, choose, clock, command, el, field } from "/app/dom.js";
 
@@ -26,6 +26,14 @@ export function pickVoyages(legend, name, tags) {
   return { set, box: boxes(legend, name.replace(".", "-"), voyages().map((f) => [f.name, `${f.name} (${f.tag.replace("_", " ")})`]), set) };
 }
 
+/** What has to be there before a verb can be asked, and where it is made; null when all is there. */
+export function lacks() {
+  const steps = [];
+  if (!files("ship").length) steps.push(el("li", null, "A ship file: ", el("a", { href: address("ship", "new") }, "make a first model of the ship"), " from its main particulars, or drop one under ", el("a", { href: address("data") }, "Data"), "."));
+  if (!files("voyage").length) steps.push(el("li", null, "A voyage: drop a log or a table under ", el("a", { href: address("data") }, "Data"), ", see what is doubted, and press Import."));
+  return steps.length ? el("section.card", { "aria-label": "First" }, el("h2", null, "First"), el("ol", null, steps)) : null;
+}
+
 /** "alma.toml" -> "alma-2.toml", or the next that is free. */
 export function nextName(base, end = "") {
   const stem = base.replace(/\.toml$/, "").replace(/-\d+$/, "") + end, there = new Set(state.project.files.map((f) => f.name));
@@ -37,7 +45,7 @@ export function nextName(base, end = "") {
 export function go(text, action, disabled) { return el("button.main", { type: "submit", disabled: disabled || state.project.read_only, onclick: doing(action) }, text); }
 
 /** Earlier answers of a verb, to be opened again. */
-export function earlier(verb, part, chosen, address) {
+export function earlier(verb, part, chosen) {
   const jobs = state.jobs.filter((j) => j.verb === verb).reverse();
   if (!jobs.length) return null;
   return el("details", { open: jobs.length < 6 }, el("summary", null, `${jobs.length} done here`), el(".scroll", { tabindex: 0, role: "group", "aria-label": `Earlier ${verb}` }, el("table", null, el("tbody", null, jobs.map((j) => el("tr", null,

@@ -13,8 +13,8 @@ let form = null;
 
 export async function ship(r) {
   if (r.item === "new") return fresh();
-  const ships = files("ship").map((f) => f.name), list = card("Ship files", el(".tools", null, ships.map((s) => el("a.button", { href: address("ship", s), "aria-current": s === r.item ? "true" : undefined }, s)), el("a.button", { href: address("ship", "new"), id: "new-ship" }, "A first model of another ship")));
-  if (!r.item) return [el("h1", null, "Ship"), list, ships.length ? el("p", null, "Choose a ship file above.") : el("p", null, "No ship file yet: make a first model from the main particulars.")];
+  const ships = files("ship").map((f) => f.name), list = card("Ship files", el(".tools", null, ships.map((s) => el("a.button", { href: address("ship", s), "aria-current": s === r.item ? "true" : undefined }, s)), el("a.button", { href: address("ship", "new"), id: "new-ship" }, ships.length ? "A first model of another ship" : "Make a first model")));
+  if (!r.item) return [el("h1", null, "Ship"), list, ships.length ? el("p", null, "Choose a ship file above.") : el("p", null, "No ship file yet. Length, beam and draught are enough for a first model; what else is known makes it better.")];
   const s = await ask(`/api/ships/${encodeURIComponent(r.item)}`), other = r.query.get("beside");
   const lines = other ? (await ask(`/api/difference?before=${encodeURIComponent(other)}&after=${encodeURIComponent(r.item)}`)).lines : [];
   const pick = field("difference from", choose("beside", [["", "none"], ...ships.filter((x) => x !== r.item).map((x) => [x, x])], other || "", (v) => { location.hash = address("ship", r.item, { beside: v, turn: r.query.get("turn") }); }));

@@ -15,6 +15,11 @@ from twin.study.prediction.trial import shaft_speed, straight_line_stability, tu
 INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")
 
 
+IMO = (  # MSC.137(76): figure, what it is called, its unit, its limit
+    ("advance_L", "advance of the turning circle", "L", 4.5),
+    ("tactical_diameter_L", "tactical diameter", "L", 5.0),
+    ("overshoot_20_20_deg", "first overshoot of the 20/20 zigzag", "deg", 25.0),
+)
 FULL_C_B = 0.7  # block coefficient from which ships often do not go straight by themselves
 
 
