@@ -1,5 +1,6 @@
 """What is judged next, and about which part a pair is weighed."""
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,18 @@ def case(tanker, voyages):
 
 
 def book(case):
+    """Of this case, as the linear pass leaves it: weighed once, and a copy for each that writes into it."""
+    opened = OPENED.setdefault(id(case), (case, _opened(case)))[1]
+    own = copy(opened)
+    own.entries, own.found = dict(opened.entries), dict(opened.found)
+    own.first, own.last = list(opened.first), list(opened.last)
+    return own
+
+
+OPENED = {}  # with its case, so that no other gets its id
+
+
+def _opened(case):
     names = list(SCENARIOS)
     return Hypotheses(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
 

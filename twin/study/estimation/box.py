@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.optimize import nnls
 
 INSIDE = 1e-9  # by which a half-space may seem left, in widths of priors
 
@@ -70,6 +69,8 @@ def within(
     z, _ = stopped(mean, covariance, lo, hi)
     if np.all(rows @ z >= least - INSIDE):
         return z
+    from scipy.optimize import nnls  # heavy, and few voyages ask for it
+
     A = np.concatenate([rows, np.eye(mean.size), -np.eye(mean.size)])
     b = np.concatenate([least, lo, -hi])
     keep = np.isfinite(b)
