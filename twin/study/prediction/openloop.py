@@ -10,7 +10,7 @@ model of this ship is known to miss (`STRUCTURE`). What these two are off by is 
 model as good as its calibration, would still show."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.respond import readings, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.prediction.disturbances import SlowDisturbances, disturbances
+from twin.study.prediction.windows import MODEL, STRUCTURE, Windows
 from twin.study.reference.structure import once_off
 from twin.study.track.track import READINGS, STATE, Track
 
@@ -31,47 +32,6 @@ MOST_WINDOWS = 400  # of one track; longer voyages are sampled more sparsely
 RUNAWAY = 1e6  # m, or whatever the unit is
 COARSE = 8
 LEADS = 24  # moments within a window at which the prediction is kept
-MODEL, SENSORS, STRUCTURE = range(3)  # the three runs of each window
-
-
-@dataclass(frozen=True)
-class Windows:
-    """One track's predictions: W windows, looked at K steps ahead."""
-
-    track: Track
-    start: np.ndarray  # (W,) grid step at which each begins
-    lead: np.ndarray  # (K,) grid steps ahead
-    # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
-    promised: np.ndarray
-    valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
-    seen: np.ndarray  # (N, 8) what was measured, with short holes bridged (see start.py)
-
-    @property
-    def step(self) -> np.ndarray:
-        """(K, W) grid step of each promise (kept inside the track: see `valid`)."""
-        return np.minimum(self.start + self.lead[:, None], len(self.track) - 1)
-
-    def at(self, horizon_s: float) -> int:
-        """The row of a horizon."""
-        return int(np.argmin(np.abs(self.lead * self.track.h - horizon_s)))
-
-    def off(self, run: int = MODEL) -> np.ndarray:
-        """(K, W, 8) in SI, promise minus measurement of the model; of a floor, what noise alone makes of
-        it. NaN where not valid."""
-        against = self.seen[self.step] if run == MODEL else self.promised[MODEL]
-        off = self.promised[run] - against
-        off[..., 2] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
-        return np.where(self.valid[..., None], off, np.nan)
-
-    def errors(self, run: int = MODEL) -> dict[str, np.ndarray]:
-        """(K, W) sizes: `position` [m], `lateral` (across the heading at the start) [m] and `heading`
-        [rad]."""
-        off, psi = self.off(run), self.track.state[self.start, 2]
-        return {
-            "position": np.hypot(off[..., 0], off[..., 1]),
-            "lateral": np.abs(off[..., 1] * np.cos(psi) - off[..., 0] * np.sin(psi)),
-            "heading": np.abs(off[..., 2]),
-        }
 
 
 def predict(
@@ -166,6 +126,36 @@ def coarse_each(
     )
     valid = _valid(track, measured, start, lead)
     return [Windows(track, start, lead, each[None, :, i], valid, measured) for i in range(count)]
+
+
+def ends(
+    track: Track, model: Model, horizons_s: Sequence[float], stride_s: float = STRIDE_S
+) -> list[Windows]:
+    """Run the model alone to each of these horizons: of each the windows that `predict` begins for it, looked
+    at there only, without noise floors. All windows are run once, to the longest that lies within the track;
+    what would end beyond it is valid nowhere."""
+    measured = seen(track)
+    placed = np.isfinite(measured[:, :3]).all(1)
+    state, wind_to = true_motion(steadied(track), model)
+    lead = [np.unique(_leads(track, [h], 1)) for h in horizons_s]
+    starts = [_starts(track, placed, round(h / track.h), stride_s) for h in horizons_s]
+    begun, every = np.unique(np.concatenate(starts)), np.unique(np.concatenate(lead))
+    run = np.zeros((every.size, begun.size, len(READINGS)))
+    there = every[every < len(track) - begun.min()]
+    if there.size:
+        alone = _Run(track, model, begun, wind_to, None)
+        run[: there.size] = alone.through(tuple(state[begun].T), there)
+    return [
+        Windows(
+            track,
+            start,
+            ahead,
+            run[np.ix_(np.searchsorted(every, ahead), np.searchsorted(begun, start))][None],
+            _valid(track, measured, start, ahead),
+            measured,
+        )
+        for start, ahead in zip(starts, lead, strict=True)
+    ]
 
 
 def again(windows: Windows, model: Model) -> np.ndarray:
