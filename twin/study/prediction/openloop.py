@@ -16,14 +16,12 @@ import numpy as np
 
 from twin.physics.effects import of_role
 from twin.physics.model import Model
-from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.respond import readings, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.prediction.disturbances import SlowDisturbances, disturbances
-from twin.study.prediction.windows import MODEL, STRUCTURE, Windows
-from twin.study.reference.structure import once_off
+from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE, Windows, no_better
 from twin.study.track.track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -49,42 +47,38 @@ def predict(
 
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
+    floors = [] if floor is None else [floor]
+    return predict_each(track, model, floors, horizons_s, stride_s=stride_s, leads=leads, seed=seed)[0]
+
+
+def predict_each(
+    track: Track,
+    model: Model,
+    floors: Sequence[NoiseModel],
+    horizons_s: Sequence[float] = HORIZONS_S,
+    *,
+    stride_s: float = STRIDE_S,
+    leads: int = LEADS,
+    seed: int = 0,
+) -> list[Windows]:
+    """The same for each of these noise models, side by side; one without any where none is given."""
     lead = _leads(track, horizons_s, leads)
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), round(min(horizons_s) / track.h), stride_s)
     rng = np.random.default_rng(seed)
     state, wind_to = true_motion(steadied(track), model)
-    fuzz = noisy(track, model, rng)[start]
-    begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
-    run = _Run(track, model, start, wind_to, disturbances(track, model, floor, start, rng))
-    promised = (
-        run.through(tuple(begin), lead).reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
-    )
+    noisily = state[start] + noisy(track, model, rng)[start]
+    begin = np.concatenate([state[start], noisily, *[noisily] * max(1, len(floors))])
+    run = _Run(track, model, start, wind_to, disturbances(track, model, floors, start, rng))
+    kept = run.through(tuple(begin.T), lead).reshape(len(lead), -1, start.size, len(READINGS))
+    promised = kept.transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
-    windows = Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
-    return windows if floor is None else _no_better(windows, model.ship)
-
-
-def _no_better(w: Windows, ship: Ship) -> Windows:
-    """The same with a structural run that is no nearer than the calibrated ship was on voyages that it was
-    not fitted to: what a core misses in the same way for minutes adds up to more than what wanders."""
-    errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
-    usual = {
-        "position": once_off(ship, "position_m", ahead),
-        "heading": np.radians(once_off(ship, "heading_deg", ahead)),
-    }
-    means = {
-        n: np.nanmean(np.where(np.any(w.valid, axis=1, keepdims=True), errors[n], 1.0), 1) for n in usual
-    }
-    place, turn = (
-        np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading")
-    )
-    promised = w.promised.copy()
-    for i, name in enumerate(READINGS):
-        promised[STRUCTURE, ..., i] += ((turn if name in ("psi", "r") else place) - 1.0) * (
-            promised[STRUCTURE] - promised[MODEL]
-        )[..., i]
-    return replace(w, promised=promised)
+    valid = _valid(track, measured, start, lead)
+    each = [
+        Windows(track, start, lead, promised[[MODEL, SENSORS, k]], valid, measured)
+        for k in range(STRUCTURE, len(promised))
+    ]
+    return [no_better(w, model.ship) for w in each] if floors else each
 
 
 def coarse(

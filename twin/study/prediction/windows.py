@@ -1,10 +1,12 @@
 """Many windows of a track, each predicted from its start, beside what was measured at their ends."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.study.track.track import Track
+from twin.physics.ship import Ship
+from twin.study.reference.structure import once_off
+from twin.study.track.track import READINGS, Track
 
 MODEL, SENSORS, STRUCTURE = range(3)  # the three runs of each window
 
@@ -47,3 +49,25 @@ class Windows:
             "lateral": np.abs(off[..., 1] * np.cos(psi) - off[..., 0] * np.sin(psi)),
             "heading": np.abs(off[..., 2]),
         }
+
+
+def no_better(w: Windows, ship: Ship) -> Windows:
+    """The same with a structural run that is no nearer than the calibrated ship was on voyages that it was
+    not fitted to: what a core misses in the same way for minutes adds up to more than what wanders."""
+    errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
+    usual = {
+        "position": once_off(ship, "position_m", ahead),
+        "heading": np.radians(once_off(ship, "heading_deg", ahead)),
+    }
+    means = {
+        n: np.nanmean(np.where(np.any(w.valid, axis=1, keepdims=True), errors[n], 1.0), 1) for n in usual
+    }
+    place, turn = (
+        np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading")
+    )
+    promised = w.promised.copy()
+    for i, name in enumerate(READINGS):
+        promised[STRUCTURE, ..., i] += ((turn if name in ("psi", "r") else place) - 1.0) * (
+            promised[STRUCTURE] - promised[MODEL]
+        )[..., i]
+    return replace(w, promised=promised)
