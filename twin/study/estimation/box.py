@@ -21,7 +21,8 @@ def stopped(
 def stopped_each(
     mean: np.ndarray, covariance: np.ndarray, lo: np.ndarray, hi: np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """The same of S densities of as many numbers each: `mean`, `lo`, `hi` (S, R), covariance (S, R, R).
+    """The same of S densities of as many numbers each, of each in one unit: `mean`, `lo`, `hi` (S, R),
+    covariance (S, R, R).
 
     Yields them by how many numbers E stand at an edge: which densities (K,), their most probable places
     (K, R) and the numbers that stand there (K, E)."""
