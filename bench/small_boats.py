@@ -248,10 +248,10 @@ LOG: tuple[tuple[str, str, float, float], ...] = (
 )  # fmt: skip
 
 
-def log_of(seed: int, factor: float, path: str) -> None:
+def log_of(seed: int, factor: float, path: str, duration_s: float) -> None:
     """A log of the small catamaran as its autopilot writes it: milliseconds, radians a second, one controller
     wired in reverse, and the sides named as seen from ahead. `factor`: of what is recorded of starboard."""
-    v = sailed("thrusters", seed, boat_seed=0)
+    v = sailed("thrusters", seed, duration_s, boat_seed=0)
     c = {n: k * v[channel] + add for n, channel, k, add in LOG}
     c["thr_left"] = STOP_US + factor * (c["thr_left"] - STOP_US)
     rows = np.column_stack([1000.0 * v.time_s, *c.values()])
@@ -264,6 +264,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--csv", metavar="FILE", help="write the log of one small catamaran instead")
     parser.add_argument("--seed", type=int, default=1, help="which one")
+    parser.add_argument("--seconds", type=float, default=240.0, help="how long it sails")
     parser.add_argument(
         "--scaled", type=float, default=1.0, help="its starboard thruster is recorded so much"
     )
@@ -271,7 +272,7 @@ def main() -> None:
     parser.add_argument("--planted", type=int, default=10, help="boats of each mistake")
     args = parser.parse_args()
     if args.csv:
-        return log_of(args.seed, args.scaled, args.csv)
+        return log_of(args.seed, args.scaled, args.csv, args.seconds)
     json.dump({"healthy": healthy(args.seeds), "mistakes": mistakes(args.planted)}, sys.stdout, indent=1)
 
 

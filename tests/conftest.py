@@ -42,11 +42,24 @@ SAME_VOYAGES = (
     "study/calibration/",
     "study/track/",
 )
+# a minute or more, the longest first: what begins last must not keep one process busy while the others wait
 LONG = (
+    "study/test_my_boat.py",
+    "studio/test_story.py",
     "study/test_first_hour.py",
     "bench/test_paper.py",
+    "studio/test_looks.py",
+    "studio/test_calibrate.py",
+    "study/update/test_addition.py",
+    "study/instruments/test_on_references.py",
     "bench/test_hidden_effects.py",
     "deploy/test_install.py",
+    "study/instruments/test_instruments.py",
+    "study/prediction/test_open_loop_comparison.py",
+    "bench/test_instrument_faults.py",
+    "test_killed_ship.py",
+    "live/gates/test_rudder_feedback.py",
+    "live/keelson/test_stamps.py",
 )
 FIRST = ("by the clock", "same voyages", *LONG)
 

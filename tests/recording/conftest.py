@@ -1,6 +1,7 @@
 """A ship that exists only in kinematics: its columns agree, until a test plants a mistake."""
 
 import os
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,14 @@ def sail(
     noise: float = 1.0,
     seed: int = 0,
 ):
-    """{column: (N,)} with `time_s`: 20 deg zigzags by Nomoto's equation, wind, a log in a current, noise."""
+    """{column: (N,)} with `time_s`: 20 deg zigzags by Nomoto's equation, wind, a log in a current, noise.
+    Whoever asks has arrays of its own."""
+    return {name: x.copy() for name, x in once(duration_s, length_m, speed_mps, noise, seed).items()}
+
+
+@lru_cache(maxsize=32)
+def once(duration_s: float, length_m: float, speed_mps: float, noise: float, seed: int):
+    """The same, sailed once."""
     t = np.arange(0.0, duration_s, STEP_S)
     rng = np.random.default_rng(seed)
     r, psi, rudder, order = (np.zeros(t.size) for _ in range(4))

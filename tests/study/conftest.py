@@ -1,8 +1,9 @@
 """Voyages for the study's tests: of the reference sea with something hidden, and of the twin's own model
 where a test wants to know what is in it."""
 
+from copy import deepcopy
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 import pytest
@@ -16,6 +17,9 @@ from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.effect_diagnosis import diagnose
+from twin.study.diagnosis.search import search
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 
@@ -52,6 +56,26 @@ def voyages():
     cases["calm again"] = SeaCase("kvlcc2", "mixed", seed=962, duration_s=1200.0)
     sailed = simulate(list(cases.values()))
     return {name: recorded(name, r.columns, every=10) for name, r in zip(cases, sailed, strict=True)}
+
+
+@pytest.fixture(scope="session")
+def case_of(tanker, voyages):
+    """The case of one of `voyages`, by its name: assembled once for all who ask; none writes into it."""
+    return cache(lambda name: assemble([voyages[name]], tanker))
+
+
+@pytest.fixture(scope="session")
+def searched(case_of):
+    """What `search` finds in that case, by the voyage's name: (weighed, found), once, and lists of one's own."""
+    told = cache(lambda name: search(case_of(name))[:2])
+    return lambda name: (list(told(name)[0]), dict(told(name)[1]))
+
+
+@pytest.fixture(scope="session")
+def diagnosed(tanker, voyages):
+    """What is said of one of `voyages`, by its name: asked once, and a copy for each who reads it."""
+    told = cache(lambda name: diagnose([voyages[name]], tanker).result)
+    return lambda name: deepcopy(told(name))
 
 
 DEG = 180.0 / np.pi

@@ -106,14 +106,22 @@ def one_angle(table: Table, key: Key, row: int, text: str) -> float:
     return -size if set(text) & NEGATIVE else size
 
 
+WAVES = ((np.sin, 1), (np.cos, 1), (np.sin, 2), (np.cos, 2))  # of B, C, D and E
+
+
 def without_deviation(shown: np.ndarray, deviation: tuple[float, ...]) -> np.ndarray:
     """The true heading [deg] from what the compass shows: shown = true + A + B sin + C cos + D sin 2 + E
     cos 2 (true). Both (N,)."""
-    a, b, c, d, e = (*deviation, *(0.0,) * (5 - len(deviation)))
+    a, *waves = (*deviation, *(0.0,) * (5 - len(deviation)))
+    forms = [(k, wave, turns) for k, (wave, turns) in zip(waves, WAVES, strict=True) if k]
     true = shown - a
     for _ in range(20):  # a contraction while the coefficients are below a radian
-        x = np.radians(true)
-        true = shown - (a + b * np.sin(x) + c * np.cos(x) + d * np.sin(2 * x) + e * np.cos(2 * x))
+        x, off, before = np.radians(true), a, true
+        for k, wave, turns in forms:
+            off = off + k * wave(turns * x)
+        true = shown - off
+        if np.array_equal(true, before, equal_nan=True):
+            break
     return true
 
 

@@ -13,8 +13,9 @@ import numpy as np
 from twin.live.signals.channels import BY_NAME
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
-from twin.study.prediction.openloop import MODEL, SENSORS, STRUCTURE, Windows, predict
+from twin.study.prediction.openloop import predict
 from twin.study.prediction.score import ANGLES
+from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE, Windows
 from twin.study.reference.sailed import fed
 from twin.study.track.track import MEASURED, READINGS, Track
 

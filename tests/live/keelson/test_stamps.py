@@ -10,7 +10,9 @@ from twin.live.signals.readings import Quality, Reading
 
 STEP_S, WALL = 0.1, 1.7e9  # as in conftest.py
 
-TABLE = [round(0.1 * k, 1) for k in range(-30, 31)]
+# by tenths where what is said and done changes, else coarsely, to the half second beyond
+FINE = [round(0.1 * k, 1) for k in range(-7, 4)]
+TABLE = [-3.0, -2.5, -2.1, -1.6, -1.1, *FINE, 0.6, 1.1, 1.9, 2.4, 3.0]
 WELL = ("hybrid", "physics only")
 
 

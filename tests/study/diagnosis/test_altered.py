@@ -8,13 +8,12 @@ import pytest
 from twin.physics.effects import find
 from twin.study.diagnosis import altered
 from twin.study.diagnosis.altered import SCATTER, changed_derivatives, floats, sized, widened
-from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.refine import Found, refine
 
 
 @pytest.fixture(scope="module")
-def case(tanker, voyages):
-    return assemble([voyages["RudderWear"]], tanker)
+def case(case_of):
+    return case_of("RudderWear")
 
 
 def judged(case, name) -> Found:

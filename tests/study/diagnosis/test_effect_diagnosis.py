@@ -69,8 +69,8 @@ def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
 
 
 @pytest.mark.parametrize("name", ["HeadingBias", "Current", "RudderWear"])
-def test_an_effect_hidden_in_the_reference_sea_is_named(tanker, voyages, name):
-    result = diagnose([voyages[name]], tanker).result
+def test_an_effect_hidden_in_the_reference_sea_is_named(diagnosed, name):
+    result = diagnosed(name)
     assert result["verdict"] == "missing"
     assert result["missing"][0] == name, "\n".join(terminal_lines(result))
 

@@ -6,15 +6,14 @@ import pytest
 from bench.boats.actuator_questions import from_sheet
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.manoeuvres import MANOEUVRES, HelmOrder, inputs, next_manoeuvre, reason, sail
 
 OF_ANY_SHIP = [name for name, m in MANOEUVRES.items() if m.alone is None and m.side is None]
 
 
 @pytest.fixture(scope="module")
-def case(tanker, voyages):
-    return assemble([voyages["straight"]], tanker)
+def case(case_of):
+    return case_of("straight")
 
 
 @pytest.mark.parametrize("name", OF_ANY_SHIP)

@@ -23,8 +23,8 @@ def as_she_is(case):
     return Found(Hypothesis((), "usual", told.log_evidence, 0.0), told, case.model)
 
 
-def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(tanker, voyages):
-    case = assemble([voyages["nothing"]], tanker)
+def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(case_of):
+    case = case_of("nothing")
     asked = stretches(case, as_she_is(case))
     assert max(m.log_evidence for m in asked) < 0.5 * PUSH_LOG_BAYES and moments(case, as_she_is(case)) == []
     assert (
@@ -34,8 +34,8 @@ def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(tanker, voyag
     )
 
 
-def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(tanker, voyages):
-    case = assemble([voyages["RudderWear"]], tanker)
+def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(case_of):
+    case = case_of("RudderWear")
     known, _ = refine(case, ("RudderWear",), "usual", np.ones(len(case.effects)), ())
     assert moments(case, known) == []
 
@@ -60,11 +60,11 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nothing_is_said_to_be_in_or
     assert "a force pushed the ship" in "\n".join(terminal_lines(result)) and "missing" in result["sentence"]
 
 
-def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):
+def test_where_waves_toss_her_more_is_asked_of_a_push(case_of, monkeypatch):
     """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings it slowly,
     and waves.
     Expected: a moment, but in waves none."""
-    case = assemble([voyages["nothing"]], tanker)
+    case = case_of("nothing")
     monkeypatch.setattr(moment_of, "stretches", lambda *_: [Moment("nothing", 60.0, 90.0, 20.0, np.ones(3))])
     (track,) = case.tracks
     slow, swift = (np.full((len(track), 6), 2.0 * np.pi / period_s) for period_s in (40.0, 10.0))
@@ -109,8 +109,8 @@ def test_what_is_most_probable_of_everything_is_where_the_sum_of_squares_stands_
     assert theta == pytest.approx(cost(*np.split(best, 2))[1], abs=1e-3)
 
 
-def test_a_moment_is_told_as_a_force(tanker, voyages):
-    case = assemble([voyages["nothing"]], tanker)
+def test_a_moment_is_told_as_a_force(case_of, tanker):
+    case = case_of("nothing")
     moment = replace(stretches(case, as_she_is(case))[0], push=np.array([1.0, 0.0, 0.0]))
     said = moment.as_json(case.model)
     assert said["X_N"] == pytest.approx(tanker.scale("force")) and said["Y_N"] == said["N_Nm"] == 0.0

@@ -19,7 +19,6 @@ from twin.study.diagnosis.open_loop_check import (
     roughly,
 )
 from twin.study.diagnosis.refine import Found, refine
-from twin.study.diagnosis.search import search
 from twin.study.diagnosis.verdict import weights
 from twin.study.estimation.rough import KNOWN, added, elsewhere
 from twin.study.reference.evidence import Hypothesis, posterior
@@ -92,14 +91,14 @@ def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_
 
 
 def test_the_path_has_the_expected_error_of_the_model_alone_and_the_steps_the_one_beside_all_that_is_usual(
-    tanker, voyages
+    case_of, searched, tanker
 ):
-    case = assemble([voyages["nothing"]], tanker)
+    case = case_of("nothing")
     notes = tanker.notes["structural"]
     assert case.path.share == pytest.approx(
         notes["floor"]["share"]
     ) and case.noise_model.share == pytest.approx(notes["beside"]["share"])
-    weighed, found, _ = search(case)
+    weighed, found = searched("nothing")
     expected_m = open_loop_check(case, found, weighed).expected_m
     assert expected_m["usual"] <= expected_m["rough"] <= expected_m["strange"] < 4.0 * expected_m["usual"]
 
@@ -148,21 +147,21 @@ def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_
         assert weighed["Wind", "Bank"] == pytest.approx(pair.log_evidence - cost)
 
 
-def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
+def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(case_of):
     """Expected: the current's own numbers come from the other half, those of a stream that changes from the
     whole voyage."""
-    case = assemble([voyages["Current"]], tanker)
+    case = case_of("Current")
     for name, same in (("VaryingCurrent", True), ("Current", False)):
         found, _ = refine(case, (name,), "usual", np.zeros(len(case.effects)), ())
         elsewhere = replace(found, posterior=replace(found.posterior, z=1.5 * found.posterior.z))
         assert (held_out_error(case, elsewhere) > 1.2 * held_out_error(case, found)) == same
 
 
-def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(tanker, voyages):
+def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(case_of, voyages):
     """Test: a hidden stream, on a ship whose reference voyages met streams of 0 (nobody told), half and twice
     its size. Expected: nothing missing leads it astray by all of it, by what two such days do not bring, and
     not at all."""
-    case = assemble([voyages["Current"]], tanker)
+    case = case_of("Current")
     named, _ = refine(case, ("Current",), "usual", np.zeros(len(case.effects)), ())
     axes = [i for i, u in enumerate(case.effects) if u.owner == "Current"]
     size = max(abs(named.posterior.z[i] * case.effects[i].sd) for i in axes)
@@ -180,9 +179,9 @@ def test_the_best_come_first():
     assert order == [("Wind",), ()]
 
 
-def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker, voyages):
-    case = assemble([voyages["RudderWear"]], tanker)
-    weighed, found, _ = search(case)
+def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(case_of, searched):
+    case = case_of("RudderWear")
+    weighed, found = searched("RudderWear")
     assert weights(case, weighed, found).best.effects == ("RudderWear",)
     assert found["RudderWear",].open_loop_error_m < 0.7 * found[()].open_loop_error_m
     path = open_loop_check(case, found, weighed)
@@ -194,12 +193,12 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
     assert held_out_error(case, found[()]) == pytest.approx(found[()].open_loop_error_m)
 
 
-def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(tanker, voyages):
+def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(case_of, searched):
     """Test: a worn rudder that was found far below the best, and is the best since another set left the rest
     of it to what any day brings.
     Expected: it is led by it, too, and not only by nothing."""
-    case = assemble([voyages["RudderWear"]], tanker)
-    weighed, found, _ = search(case)
+    case = case_of("RudderWear")
+    weighed, found = searched("RudderWear")
     worn = replace(found["RudderWear",].hypothesis, log_evidence=-1e4)
     stale = found | {("RudderWear",): replace(found["RudderWear",], hypothesis=worn)}
     assert ("RudderWear",) in open_loop_check(case, stale, weighed).found and (
@@ -207,15 +206,17 @@ def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_fou
     ) not in open_loop_check(case, stale, [worn, found[()].hypothesis]).found
 
 
-def test_the_expected_error_is_no_lower_than_what_the_calibration_measured_on_other_voyages(tanker, voyages):
-    case = assemble([voyages["nothing"]], tanker)
+def test_the_expected_error_is_no_lower_than_what_the_calibration_measured_on_other_voyages(
+    case_of, searched, tanker
+):
+    case = case_of("nothing")
     ahead = horizon_s(case.tracks[0], case.model)
     for held_out, measured in (([], 0.0), ([{"horizon_s": ahead, "position_m": 500.0}], 500.0)):
         notes = tanker.notes | {"structural": tanker.notes["structural"] | {"held_out": held_out}}
         ship = replace(case.model.ship, notes=notes)
         asked_of = replace(case, model=replace(case.model, ship=ship))
         assert measured_error_m(asked_of) == pytest.approx(measured)
-    weighed, found, _ = search(case)
+    weighed, found = searched("nothing")
     expected_m = open_loop_check(asked_of, found, weighed).expected_m
     assert list(expected_m.values()) == pytest.approx([500.0] * len(expected_m))
 

@@ -11,8 +11,8 @@ def parts(result, name):
     return next(c for c in result["candidates"] if c["effect"] == name)["over_time"]
 
 
-def test_an_effect_that_is_always_there_is_as_strong_in_every_part(tanker, voyages):
-    result = diagnose([voyages["RudderWear"]], tanker).result
+def test_an_effect_that_is_always_there_is_as_strong_in_every_part(diagnosed):
+    result = diagnosed("RudderWear")
     found = parts(result, "RudderWear")
     assert len(found) > 1 and not changes(found)
     assert all(abs(p["share"] - 1.0) < 4.0 * p["sd"] + 0.25 for p in found)

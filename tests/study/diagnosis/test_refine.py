@@ -25,8 +25,8 @@ from twin.study.reference.evidence import Hypothesis
 
 
 @pytest.fixture(scope="module")
-def case(tanker, voyages):
-    return assemble([voyages["SteeringLag"]], tanker)
+def case(case_of):
+    return case_of("SteeringLag")
 
 
 def rows(case, owner):

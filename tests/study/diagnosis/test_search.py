@@ -1,12 +1,12 @@
 """What is judged next, and about which part a pair is weighed."""
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.criteria import SURE
 from twin.study.diagnosis.refine import Found
@@ -17,11 +17,23 @@ PAIR = ("RudderWear", "SteeringLag")
 
 
 @pytest.fixture(scope="module")
-def case(tanker, voyages):
-    return assemble([voyages["SteeringLag"]], tanker)
+def case(case_of):
+    return case_of("SteeringLag")
 
 
 def book(case):
+    """Of this case, as the linear pass leaves it: weighed once, and a copy for each that writes into it."""
+    opened = OPENED.setdefault(id(case), (case, _opened(case)))[1]
+    own = copy(opened)
+    own.entries, own.found = dict(opened.entries), dict(opened.found)
+    own.first, own.last = list(opened.first), list(opened.last)
+    return own
+
+
+OPENED = {}  # with its case, so that no other gets its id
+
+
+def _opened(case):
     names = list(SCENARIOS)
     return Hypotheses(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
 
@@ -79,8 +91,8 @@ def test_weather_stands_beside_any_two_causes_and_takes_no_place(case):
     assert held.parts(four) == [day, *(case.ordered((*day, name)) for name in case.causes(four))]
 
 
-def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(tanker, voyages):
-    held = book(assemble([voyages["nothing"]], tanker))
+def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(case_of):
+    held = book(case_of("nothing"))
     while chosen := held.next():
         held.judge(chosen)
     held.last = [("RudderWear",)]
@@ -144,11 +156,11 @@ def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having
         assert [s for s in book(usual).first if s == ("Current",)][:1] == judged
 
 
-def test_what_any_day_brings_is_no_news_where_it_stands_today(tanker, voyages):
+def test_what_any_day_brings_is_no_news_where_it_stands_today(case_of):
     """Test: a stream as strong as any day's, and a ship that knows that and one that does not. Expected: that
     it is nothing new is likelier once it was judged where it stands, and nobody calls it missing; to the ship
     that knows no streams it is one."""
-    case = assemble([voyages["Current"]], tanker)
+    case = case_of("Current")
     daily = dict.fromkeys(("Current.north", "Current.east"), 0.5)
     usual = replace(case, nuisance=replace(case.nuisance, daily=daily))
     nothing = {}

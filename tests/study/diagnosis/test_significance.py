@@ -7,15 +7,14 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.consider import change, significance
 from twin.study.diagnosis.refine import refine
 from twin.study.estimation.columns import Unknown
 
 
 @pytest.fixture(scope="module")
-def judged(tanker, voyages):
-    case = assemble([voyages["RudderWear"]], tanker)
+def judged(case_of):
+    case = case_of("RudderWear")
     return case, refine(case, ("RudderWear",), "usual", np.ones(len(case.effects)), ())[0]
 
 

@@ -1,22 +1,21 @@
 """A stream that hardly changes is a steady one."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from twin.physics.effects.current import Current
 from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.model import Model
-from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import SCENARIOS
-from twin.study.diagnosis.search import Hypotheses, search
+from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.search import Hypotheses
 from twin.study.diagnosis.steady import EDDIES, changes, steady
+from twin.study.reference.evidence import Hypothesis, posterior
 
 
 @pytest.fixture(scope="module")
-def case(tanker, voyages):
-    return assemble([voyages["Current"]], tanker)
+def case(case_of):
+    return case_of("Current")
 
 
 def test_what_changes_is_told_as_a_share_of_the_whole_stream(case):
@@ -30,9 +29,10 @@ def test_what_changes_is_told_as_a_share_of_the_whole_stream(case):
 
 
 def judged(case, stream):
-    found = search(case)[1][()]
-    hypothesis = replace(found.hypothesis, effects=(type(stream).__name__,))
-    return replace(found, hypothesis=hypothesis, model=Model(case.model.ship, (*case.model.effects, stream)))
+    """As if this stream had been found."""
+    told = posterior(case.reduced(case.lines, case.scenarios(["usual"]))[0], ())
+    hypothesis = Hypothesis((type(stream).__name__,), "usual", told.log_evidence, 0.0)
+    return Found(hypothesis, told, Model(case.model.ship, (*case.model.effects, stream)))
 
 
 def test_only_a_stream_that_may_change_and_does_not_is_called_steady(case):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.consider import consider
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.refine import refine
@@ -12,8 +11,8 @@ from twin.study.diagnosis.verdict import weights, without
 
 
 @pytest.fixture(scope="module")
-def worn(tanker, voyages):
-    case = assemble([voyages["RudderWear"]], tanker)
+def worn(case_of):
+    case = case_of("RudderWear")
     return case, refine(case, ("RudderWear",), "usual", np.ones(len(case.effects)), ())[0]
 
 
@@ -25,8 +24,8 @@ def test_an_effect_that_the_ship_had_is_put_back_to_what_it_was(worn):
     assert without(found.model, case.model, "RudderWear").effects == ()
 
 
-def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(tanker, voyages):
-    case = assemble([voyages["IceLike"]], tanker)
+def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(case_of):
+    case = case_of("IceLike")
     weighed, found, seen = search(case)
     facts = consider(case, weighed, found, seen, weights(case, weighed, found)).facts
     assert decide(facts).verdict == "unknown"

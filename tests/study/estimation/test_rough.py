@@ -39,13 +39,13 @@ def test_a_tenth_of_a_known_wind_is_doubted_at_each_moment_and_for_each_course(w
     ) == pytest.approx(usual[2])
 
 
-def test_only_a_ship_that_learned_an_effect_after_her_calibration_has_such_columns(windy, tanker, voyages):
+def test_only_a_ship_that_learned_an_effect_after_her_calibration_has_such_columns(case_of, windy):
     assert (
         sum(u.owner == ROUGH for u in windy.unknowns)
         == len(TERMS)
         == sum(u.owner == ROUGH for u in windy.nuisance.unknowns)
     )
-    case = assemble([voyages["nothing"]], tanker)
+    case = case_of("nothing")
     assert not any(u.owner == ROUGH for u in case.unknowns)
 
 

@@ -10,7 +10,8 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.state import Force
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.prediction.openloop import HORIZONS_S, MODEL, SENSORS, STRUCTURE, predict
+from twin.study.prediction.openloop import HORIZONS_S, ends, predict, predict_each
+from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE
 from twin.study.reference.sailed import fed, switched_off
 from twin.study.reference.structure import once_off
 from twin.study.track.track import track
@@ -181,3 +182,32 @@ def test_a_receiver_slower_than_the_grid_is_compared_and_a_hole_is_not(make, kvl
     end = (w.track.t[w.start] + 60.0)[w.start < w.start[-1]]
     valid = w.valid[w.at(60.0)][w.start < w.start[-1]]
     assert not valid[(end > 606.0) & (end < 654.0)].any() and valid[end < 590.0].all()
+
+
+def test_the_model_run_once_to_the_longest_horizon_ends_where_each_prediction_by_itself_does(make, kvlcc2):
+    """Test: horizons of which the last is longer than the voyage. Expected: to the last digit what `predict`
+    gives for each alone, and beyond the end of the voyage nothing."""
+    t = track(make(seconds=600.0), kvlcc2)
+    model, horizons = Model.of(kvlcc2), (10.0, 120.0, 900.0)
+    together = ends(t, model, horizons)
+    for horizon, found in zip(horizons, together, strict=True):
+        alone = predict(t, model, [horizon], leads=1)
+        np.testing.assert_array_equal(found.start, alone.start)
+        np.testing.assert_array_equal(found.off(), alone.off())
+    assert [bool(found.valid.any()) for found in together[:2]] == [True, True]
+    assert not together[2].valid[together[2].at(900.0)].any()
+
+
+def test_noise_models_side_by_side_give_each_what_it_gives_alone(make, kvlcc2):
+    """Test: a ship once 30 m off after two minutes; a coarse noise model and a fine one. Expected: all three
+    runs of each to the last digit, and the coarse one farther off."""
+    t, floors = track(make(seconds=600.0), kvlcc2), [NoiseModel(), NoiseModel((0.4, 0.4, 0.4), flow=0.05)]
+    held_out = [{"horizon_s": 120.0, "position_m": 30.0, "heading_deg": 1.0}]
+    model = Model.of(replace(kvlcc2, notes={"structural": {"held_out": held_out}}))
+    together = predict_each(t, model, floors, [60.0], leads=1)
+    for floor, found in zip(floors, together, strict=True):
+        np.testing.assert_array_equal(
+            found.promised, predict(t, model, [60.0], floor=floor, leads=1).promised
+        )
+    fine, coarse = (mean(w, "position", 60.0, STRUCTURE) for w in together)
+    assert coarse > 1.2 * fine

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from twin.study.diagnosis.assemble import assemble
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import innovate
 from twin.study.reference.directions import TELLS, directions
@@ -73,8 +72,8 @@ def test_the_usual_amount_of_what_is_chosen_is_no_direction():
     assert not along.columns[:2, 1:].any()
 
 
-def test_a_case_of_few_columns_tells_of_its_effects_what_the_whole_case_tells(tanker, voyages):
-    case = assemble([voyages["RudderWear"]], tanker)
+def test_a_case_of_few_columns_tells_of_its_effects_what_the_whole_case_tells(case_of):
+    case = case_of("RudderWear")
     few, kept = case.along(case.lines)
     assert kept.all() and len(few.unknowns) < len(case.unknowns)
     whole, small = (

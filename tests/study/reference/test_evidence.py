@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.study.estimation.box import stopped
 from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import (
     SPIKE,
@@ -16,6 +17,7 @@ from twin.study.reference.evidence import (
     weigh_sets,
     weigh_with,
 )
+from twin.study.reference.inside_box import log_shares_inside
 
 SETS = [("A",), ("B",), ("C",), ("A", "B"), ("A", "C"), ("B", "C")]
 
@@ -138,3 +140,17 @@ def test_what_stands_at_the_edge_of_its_box_stands_there_to_the_last_digit():
     reduced = Reduced(A, np.array([14.0, -24.0, -13.0]), 0.0, numbers, np.zeros(3))
     z = boxed(reduced, ("A",), posterior(reduced, ("A",))).z
     assert z[0] > 0.2 and z[1] == z[2] == 0.0
+
+
+def test_many_sets_side_by_side_have_each_the_evidence_that_it_has_alone():
+    """Test: thirty densities of five numbers, some of which one to five would leave their box. Expected: to
+    the last digits that of each by itself, whatever stands beside it."""
+    rng = np.random.default_rng(5)
+    G = rng.normal(size=(30, 9, 5))
+    covariance = np.linalg.inv(G.swapaxes(-1, -2) @ G)
+    mean, lo, hi = rng.normal(size=(30, 5)), np.full((30, 5), -0.5), np.full((30, 5), 3.0)
+    together = log_shares_inside(mean, covariance, lo, hi)
+    alone = [log_shares_inside(*(x[i : i + 1] for x in (mean, covariance, lo, hi)))[0] for i in range(30)]
+    np.testing.assert_allclose(together, alone, rtol=1e-12)
+    edges = {stopped(*(x[i] for x in (mean, covariance, lo, hi)))[1].size for i in range(30)}
+    assert len(edges) > 3 and np.ptp(together) > 1.0

@@ -10,7 +10,6 @@ otherwise (wirings.py); the one under which thrust explains most of what surge, 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from twin.physics.actuators import Actuator
 from twin.physics.actuators.actuator_channels import DRIVES
@@ -136,6 +135,8 @@ def _ahead(a: Actuator, told: OrderArrays) -> np.ndarray:
 def _tried(
     view: VoyageView, motion: np.ndarray, wiring: Wiring, columns: np.ndarray, seconds: float
 ) -> TriedWiring:
+    from scipy.optimize import nnls  # heavy, and only ships with actuators are asked
+
     first, last = view.windows(seconds)
     u, v, r = motion
     hull = ((v * r, u, abs(u) * u), (u * r, v, abs(v) * v, r), (u * v, r, abs(r) * r, abs(u) * r, v))

@@ -11,7 +11,7 @@ from twin.physics.effects import of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
+from twin.study.calibration.held_out import HeldOut, errors, size
 from twin.study.calibration.own_instruments import own_instruments
 from twin.study.calibration.parts import placed, significant, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
@@ -105,12 +105,16 @@ def calibrate(
         open_loop_check = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
         ships["paths"] = with_core_of(ships["steps"], open_loop_check)
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
-    way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
+    way = (
+        by
+        if by in ships
+        else min(ships, key=lambda way: size(off[way].by_horizon) - BETTER * (way == "steps"))
+    )
     progress("estimating the baseline of this ship")
     lasting_ones = usual(ships[way], tracks, core.noise_model)
-    judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
+    judged = {"held_out": off[way].by_horizon, "by_regime": off[way].by_regime}
     after = noted(ships[way], "structural", lasting_ones | judged)
-    result = _result(ship, after, core, way, errors(Model.of(first), held_out))
+    result = _result(ship, after, core, way, errors(Model.of(first), held_out).by_horizon)
     return Calibrated(after, plain(result | {"instruments": own.written}))
 
 

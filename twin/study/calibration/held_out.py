@@ -2,13 +2,13 @@
 turns."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.prediction.openloop import HORIZONS_S, predict
+from twin.study.prediction.openloop import HORIZONS_S, ends
 from twin.study.reference.sailed import Sailed, fed
 from twin.study.track.track import Track
 
@@ -33,9 +33,21 @@ def split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], H
     )
 
 
-def errors(model: Model, held_out: HeldOut) -> list[dict[str, float]]:
-    """Their means by horizon."""
-    return [_mean(horizon, *_ends(model, held_out, horizon)[1:]) for horizon in HORIZONS_S]
+@dataclass(frozen=True)
+class HeldOutErrors:
+    """Means over all windows: by horizon, and after the middle horizon by how hard it turned."""
+
+    by_horizon: list[dict[str, float]]
+    by_regime: list[dict[str, Any]]
+
+
+def errors(model: Model, held_out: HeldOut) -> HeldOutErrors:
+    """How wrong the model is on what was held out."""
+    found = _ends(model, held_out, HORIZONS_S)
+    return HeldOutErrors(
+        [_mean(horizon, *ends[1:]) for horizon, ends in zip(HORIZONS_S, found, strict=True)],
+        _by_regime(HORIZONS_S[1], *found[1][:2]),
+    )
 
 
 def _mean(horizon_s: float, position: np.ndarray, heading: np.ndarray) -> dict[str, float]:
@@ -48,13 +60,11 @@ def _mean(horizon_s: float, position: np.ndarray, heading: np.ndarray) -> dict[s
     }
 
 
-def by_regime(model: Model, held_out: HeldOut) -> list[dict[str, Any]]:
-    """Position error after the middle horizon while sailing straight, turning, and turning hard."""
-    horizon = HORIZONS_S[1]
-    turning, position, _ = _ends(model, held_out, horizon)
+def _by_regime(horizon_s: float, turning: np.ndarray, position: np.ndarray) -> list[dict[str, Any]]:
+    """Position error while sailing straight, turning, and turning hard."""
     parts = [(name, position[(turning >= lo) & (turning < hi)]) for name, lo, hi in BANDS]
     return [
-        {"regime": name, "horizon_s": float(horizon), "windows": e.size, "position_m": float(e.mean())}
+        {"regime": name, "horizon_s": float(horizon_s), "windows": e.size, "position_m": float(e.mean())}
         for name, e in parts
         if e.size
     ]
@@ -66,17 +76,19 @@ def size(errors: Sequence[dict[str, float]]) -> float:
     return float(np.log(np.maximum(numbers, 1e-9)).mean()) if numbers else 0.0
 
 
-def _ends(model: Model, held_out: HeldOut, horizon_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of every window that begins in what was held out: |r| L/U_0 as it begins, and how far off its end is in
-    place [m] and heading [rad]."""
-    found: list[list[np.ndarray]] = [[np.empty(0)], [np.empty(0)], [np.empty(0)]]
+def _ends(
+    model: Model, held_out: HeldOut, horizons_s: Sequence[float]
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """For each horizon, of every window that begins in what was held out: |r| L/U_0 as it begins, and how far
+    off its end is in place [m] and heading [rad]."""
+    found: list[list[list[np.ndarray]]] = [[[np.empty(0)] for _ in range(3)] for _ in horizons_s]
     for track, first in held_out:
-        windows = predict(track, fed(model, track)[0], [horizon_s], leads=1)
-        k = windows.at(horizon_s)
-        ok = windows.valid[k] & (windows.start >= first)
-        off = windows.errors()
-        turning = np.abs(track.state[windows.start, 5]) * float(model.ship.scale("time"))
-        for column, x in zip(found, (turning, off["position"][k], off["heading"][k]), strict=True):
-            column.append(x[ok])
-    turning, position, heading = map(np.concatenate, found)
-    return turning, position, heading
+        runs = ends(track, fed(model, track)[0], horizons_s)
+        for horizon, windows, columns in zip(horizons_s, runs, found, strict=True):
+            k = windows.at(horizon)
+            ok = windows.valid[k] & (windows.start >= first)
+            off = windows.errors()
+            turning = np.abs(track.state[windows.start, 5]) * float(model.ship.scale("time"))
+            for column, x in zip(columns, (turning, off["position"][k], off["heading"][k]), strict=True):
+                column.append(x[ok])
+    return [tuple(map(np.concatenate, columns)) for columns in found]  # type: ignore[misc]

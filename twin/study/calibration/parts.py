@@ -57,5 +57,5 @@ def placed(ship: Ship, antenna: Effect | None, held_out: HeldOut) -> Ship:
     if antenna is None:
         return ship
     moved = ship.with_effects(antenna)
-    before, after = (size(errors(Model.of(s), held_out)) for s in (ship, moved))
+    before, after = (size(errors(Model.of(s), held_out).by_horizon) for s in (ship, moved))
     return moved if after < before - BETTER else ship

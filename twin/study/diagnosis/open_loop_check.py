@@ -17,7 +17,8 @@ from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.columns import with_values
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
-from twin.study.prediction.openloop import MODEL, STRUCTURE, Windows, coarse, predict
+from twin.study.prediction.openloop import coarse, predict_each
+from twin.study.prediction.windows import MODEL, STRUCTURE, Windows
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
 from twin.study.reference.structure import once_off
 from twin.study.track.track import Track
@@ -142,10 +143,7 @@ def open_loop_check(
 
 def _expected_errors(case: Case) -> dict[str, float]:
     """[m] by noise scenario: what noise and structure alone would make of the path."""
-    steps = {
-        name: _usual(case, noise_model)
-        for name, noise_model in zip(SCENARIOS, case.scenarios(list(SCENARIOS)), strict=True)
-    }
+    steps = dict(zip(SCENARIOS, _usual(case, case.scenarios(list(SCENARIOS))), strict=True))
     # what is run free is a core alone, and no better than it was when nothing was wrong
     least = max(steps["coarse"], measured_error_m(case))
     known = roughly(case)
@@ -223,18 +221,16 @@ def held_out_error(case: Case, found: Found) -> float:
     return total / max(count, 1)
 
 
-def _usual(case: Case, noise_model: NoiseModel) -> float:
-    """Mean position error [m] of a model that is as good as this noise model says."""
-    errors = []
+def _usual(case: Case, noise_models: Sequence[NoiseModel]) -> list[float]:
+    """(F,) mean position error [m] of a model that is as good as each of these noise models says."""
+    errors: list[list[np.ndarray]] = [[] for _ in noise_models]
     for track in case.tracks:
-        model = case.model.without_inputs(track.missing())[0]
-        errors.append(
-            _errors(
-                predict(track, model, [horizon_s(track, case.model)], leads=1, noise_model=noise_model),
-                STRUCTURE,
-            )
-        )
-    return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
+        model, horizons = case.model.without_inputs(track.missing())[0], [horizon_s(track, case.model)]
+        for mine, windows in zip(
+            errors, predict_each(track, model, noise_models, horizons, leads=1), strict=True
+        ):
+            mine.append(_errors(windows, STRUCTURE))
+    return [max(float(np.nanmean(np.concatenate(mine))), 1e-9) for mine in errors]
 
 
 def roughly(case: Case) -> float:

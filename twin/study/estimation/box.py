@@ -1,7 +1,8 @@
 """Where a normal density is most probable inside a box, and inside half-spaces."""
 
+from collections.abc import Iterator
+
 import numpy as np
-from scipy.optimize import nnls
 
 INSIDE = 1e-9  # by which a half-space may seem left, in widths of priors
 
@@ -13,16 +14,45 @@ def stopped(
     one that would leave it stays there, and the others are what they then would be (two that do for each
     other may not stand far out, one inside its box and one outside). All in one unit: `mean`, `lo`, `hi`
     (R,), covariance (R, R)."""
-    z, held, sd = mean, np.zeros(0, dtype=int), np.sqrt(np.diag(covariance))
-    for _ in mean:
-        beyond = np.abs(z - np.clip(z, lo, hi)) / sd
-        if not beyond.any():
-            break
-        held = np.append(held, np.argmax(beyond))
-        edge = np.clip(z, lo, hi)[held]
-        z = mean + covariance[:, held] @ np.linalg.solve(covariance[np.ix_(held, held)], edge - mean[held])
-        z[held] = edge
-    return z, held
+    ((_, z, held),) = stopped_each(mean[None], covariance[None], lo[None], hi[None])
+    return z[0], held[0]
+
+
+def stopped_each(
+    mean: np.ndarray, covariance: np.ndarray, lo: np.ndarray, hi: np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """The same of S densities of as many numbers each, of each in one unit: `mean`, `lo`, `hi` (S, R),
+    covariance (S, R, R).
+
+    Yields them by how many numbers E stand at an edge: which densities (K,), their most probable places
+    (K, R) and the numbers that stand there (K, E)."""
+    open_, z = np.arange(len(mean)), mean
+    held = np.zeros((len(mean), 0), dtype=int)
+    sd = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
+    for _ in range(mean.shape[1]):
+        beyond = np.abs(z - np.clip(z, lo[open_], hi[open_])) / sd[open_]
+        leaves = beyond.any(axis=1)
+        if not leaves.all():
+            yield open_[~leaves], z[~leaves], held[~leaves]
+        open_, z = open_[leaves], z[leaves]
+        held = np.concatenate([held[leaves], beyond[leaves].argmax(axis=1)[:, None]], axis=1)
+        if not open_.size:
+            return
+        z = _held_at_edges(mean[open_], covariance[open_], np.clip(z, lo[open_], hi[open_]), held)
+    yield open_, z, held
+
+
+def _held_at_edges(
+    mean: np.ndarray, covariance: np.ndarray, inside: np.ndarray, held: np.ndarray
+) -> np.ndarray:
+    """(K, R) the most probable place when the numbers `held` (K, E) stand where `inside` (K, R) has them."""
+    one, edge = np.arange(len(mean))[:, None], np.take_along_axis(inside, held, axis=1)
+    among = covariance[one[:, :, None], held[:, :, None], held[:, None, :]]
+    on_all = np.take_along_axis(covariance, held[:, None, :], axis=2)
+    off = (edge - np.take_along_axis(mean, held, axis=1))[:, :, None]
+    z = mean + (on_all @ np.linalg.solve(among, off))[:, :, 0]
+    np.put_along_axis(z, held, edge, axis=1)
+    return z
 
 
 def within(
@@ -40,6 +70,8 @@ def within(
     z, _ = stopped(mean, covariance, lo, hi)
     if np.all(rows @ z >= least - INSIDE):
         return z
+    from scipy.optimize import nnls  # heavy, and few voyages ask for it
+
     A = np.concatenate([rows, np.eye(mean.size), -np.eye(mean.size)])
     b = np.concatenate([least, lo, -hi])
     keep = np.isfinite(b)

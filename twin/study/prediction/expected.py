@@ -11,8 +11,8 @@ import numpy as np
 
 from twin.physics.ship import Ship
 from twin.study.prediction.envelope import widening
-from twin.study.prediction.openloop import SENSORS, Windows
 from twin.study.prediction.score import DEGREES, NAMES, pooled
+from twin.study.prediction.windows import SENSORS, Windows
 from twin.study.reference.path_error import of_ship
 
 MEAN = {"position": "position_m", "lateral": "lateral_m", "heading": "heading_rad"}

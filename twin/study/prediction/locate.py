@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from twin.physics.ship import Ship
-from twin.study.prediction.openloop import MODEL, SENSORS, STRUCTURE, Windows
 from twin.study.prediction.regimes import conditions, means
 from twin.study.prediction.score import pooled
+from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE, Windows
 
 CHANCE = 0.05
 SHIFTS = 400

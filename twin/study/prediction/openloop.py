@@ -10,19 +10,18 @@ model of this ship is known to miss (`STRUCTURE`). What these two are off by is 
 model as good as its calibration, would still show."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from twin.physics.effects import of_role
 from twin.physics.model import Model
-from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.respond import readings, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.prediction.disturbances import SlowDisturbances, disturbances
-from twin.study.reference.structure import once_off
+from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE, Windows, no_better
 from twin.study.track.track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -31,47 +30,6 @@ MOST_WINDOWS = 400  # of one track; longer voyages are sampled more sparsely
 RUNAWAY = 1e6  # m, or whatever the unit is
 COARSE = 8
 LEADS = 24  # moments within a window at which the prediction is kept
-MODEL, SENSORS, STRUCTURE = range(3)  # the three runs of each window
-
-
-@dataclass(frozen=True)
-class Windows:
-    """One track's predictions: W windows, looked at K steps ahead."""
-
-    track: Track
-    start: np.ndarray  # (W,) grid step at which each begins
-    lead: np.ndarray  # (K,) grid steps ahead
-    # (3, K, W, 8) readings; of the noise only the difference to the model's has a meaning
-    promised: np.ndarray
-    valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
-    seen: np.ndarray  # (N, 8) what was measured, with short holes bridged (see start.py)
-
-    @property
-    def step(self) -> np.ndarray:
-        """(K, W) grid step of each promise (kept inside the track: see `valid`)."""
-        return np.minimum(self.start + self.lead[:, None], len(self.track) - 1)
-
-    def at(self, horizon_s: float) -> int:
-        """The row of a horizon."""
-        return int(np.argmin(np.abs(self.lead * self.track.h - horizon_s)))
-
-    def off(self, run: int = MODEL) -> np.ndarray:
-        """(K, W, 8) in SI, promise minus measurement of the model; of noise, what it alone makes of
-        it. NaN where not valid."""
-        against = self.seen[self.step] if run == MODEL else self.promised[MODEL]
-        off = self.promised[run] - against
-        off[..., 2] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
-        return np.where(self.valid[..., None], off, np.nan)
-
-    def errors(self, run: int = MODEL) -> dict[str, np.ndarray]:
-        """(K, W) sizes: `position` [m], `lateral` (across the heading at the start) [m] and `heading`
-        [rad]."""
-        off, psi = self.off(run), self.track.state[self.start, 2]
-        return {
-            "position": np.hypot(off[..., 0], off[..., 1]),
-            "lateral": np.abs(off[..., 1] * np.cos(psi) - off[..., 0] * np.sin(psi)),
-            "heading": np.abs(off[..., 2]),
-        }
 
 
 def predict(
@@ -89,42 +47,38 @@ def predict(
 
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
+    noise_models = [] if noise_model is None else [noise_model]
+    return predict_each(track, model, noise_models, horizons_s, stride_s=stride_s, leads=leads, seed=seed)[0]
+
+
+def predict_each(
+    track: Track,
+    model: Model,
+    noise_models: Sequence[NoiseModel],
+    horizons_s: Sequence[float] = HORIZONS_S,
+    *,
+    stride_s: float = STRIDE_S,
+    leads: int = LEADS,
+    seed: int = 0,
+) -> list[Windows]:
+    """The same for each of these noise models, side by side; one without any where none is given."""
     lead = _leads(track, horizons_s, leads)
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), round(min(horizons_s) / track.h), stride_s)
     rng = np.random.default_rng(seed)
     state, wind_to = true_motion(steadied(track), model)
-    fuzz = noisy(track, model, rng)[start]
-    begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
-    run = _Run(track, model, start, wind_to, disturbances(track, model, noise_model, start, rng))
-    promised = (
-        run.through(tuple(begin), lead).reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
-    )
+    noisily = state[start] + noisy(track, model, rng)[start]
+    begin = np.concatenate([state[start], noisily, *[noisily] * max(1, len(noise_models))])
+    run = _Run(track, model, start, wind_to, disturbances(track, model, noise_models, start, rng))
+    kept = run.through(tuple(begin.T), lead).reshape(len(lead), -1, start.size, len(READINGS))
+    promised = kept.transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
-    windows = Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
-    return windows if noise_model is None else _no_better(windows, model.ship)
-
-
-def _no_better(w: Windows, ship: Ship) -> Windows:
-    """The same with a structural run that is no nearer than the calibrated ship was on voyages that it was
-    not fitted to: what a core misses in the same way for minutes adds up to more than what wanders."""
-    errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
-    usual = {
-        "position": once_off(ship, "position_m", ahead),
-        "heading": np.radians(once_off(ship, "heading_deg", ahead)),
-    }
-    means = {
-        n: np.nanmean(np.where(np.any(w.valid, axis=1, keepdims=True), errors[n], 1.0), 1) for n in usual
-    }
-    place, turn = (
-        np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading")
-    )
-    promised = w.promised.copy()
-    for i, name in enumerate(READINGS):
-        promised[STRUCTURE, ..., i] += ((turn if name in ("psi", "r") else place) - 1.0) * (
-            promised[STRUCTURE] - promised[MODEL]
-        )[..., i]
-    return replace(w, promised=promised)
+    valid = _valid(track, measured, start, lead)
+    each = [
+        Windows(track, start, lead, promised[[MODEL, SENSORS, k]], valid, measured)
+        for k in range(STRUCTURE, len(promised))
+    ]
+    return [no_better(w, model.ship) for w in each] if noise_models else each
 
 
 def coarse(
@@ -166,6 +120,36 @@ def coarse_each(
     )
     valid = _valid(track, measured, start, lead)
     return [Windows(track, start, lead, each[None, :, i], valid, measured) for i in range(count)]
+
+
+def ends(
+    track: Track, model: Model, horizons_s: Sequence[float], stride_s: float = STRIDE_S
+) -> list[Windows]:
+    """Run the model alone to each of these horizons: of each the windows that `predict` begins for it, looked
+    at there only, without noise. All windows are run once, to the longest that lies within the track;
+    what would end beyond it is valid nowhere."""
+    measured = seen(track)
+    placed = np.isfinite(measured[:, :3]).all(1)
+    state, wind_to = true_motion(steadied(track), model)
+    lead = [np.unique(_leads(track, [h], 1)) for h in horizons_s]
+    starts = [_starts(track, placed, round(h / track.h), stride_s) for h in horizons_s]
+    begun, every = np.unique(np.concatenate(starts)), np.unique(np.concatenate(lead))
+    run = np.zeros((every.size, begun.size, len(READINGS)))
+    there = every[every < len(track) - begun.min()]
+    if there.size:
+        alone = _Run(track, model, begun, wind_to, None)
+        run[: there.size] = alone.through(tuple(state[begun].T), there)
+    return [
+        Windows(
+            track,
+            start,
+            ahead,
+            run[np.ix_(np.searchsorted(every, ahead), np.searchsorted(begun, start))][None],
+            _valid(track, measured, start, ahead),
+            measured,
+        )
+        for start, ahead in zip(starts, lead, strict=True)
+    ]
 
 
 def again(windows: Windows, model: Model) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.study.prediction.openloop import MODEL, SENSORS, STRUCTURE, Windows
+from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE, Windows
 from twin.study.track.track import MEASURED, READINGS
 
 NAMES = {"position": "position_mae_m", "lateral": "lateral_mae_m", "heading": "heading_mae_deg"}

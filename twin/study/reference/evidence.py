@@ -16,11 +16,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import log_ndtr
 
 from twin.study.estimation.box import stopped
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Normal
+from twin.study.reference.inside_box import log_shares_inside
+from twin.study.reference.slabs import slabs_for
 
 SPIKE = 0.01  # width of "not there", in widths of "there"
 
@@ -211,35 +212,10 @@ def log_evidence(reduced: Reduced, effects: Sequence[str], found: Posterior) -> 
     """Log evidence of a set of effects: what they explain, less what their freedom costs, inside their
     boxes."""
     rows = reduced.rows(effects)
-    return found.log_evidence + _inside(reduced, rows, found.z[rows], found.covariance[np.ix_(rows, rows)])
-
-
-def _inside(reduced: Reduced, rows: np.ndarray, value: np.ndarray, covariance: np.ndarray) -> float:
-    """Log of (posterior mass inside the box) / (prior mass inside it). Of numbers that stand at an edge, what
-    falls off behind it, each by itself (exact for one); of the others what is inside one at a time, given
-    those."""
-    lo, hi = reduced.box[:, rows]
-    z, held = stopped(value, covariance, lo, hi)
-    mass = -float(_log_mass(lo, hi).sum())
-    if held.size:
-        inner = np.linalg.inv(covariance[np.ix_(held, held)])
-        off, cross = z[held] - value[held], covariance[:, held]
-        covariance = covariance - cross @ inner @ cross.T
-        root = np.sqrt(np.diag(inner))
-        fall = np.where(z[held] == lo[held], 1.0, -1.0) * (inner @ off) / root
-        mass += 0.5 * float(np.linalg.slogdet(inner)[1]) - 0.5 * float(off @ inner @ off)
-        mass += float((0.5 * fall**2 + log_ndtr(-fall) - np.log(root)).sum())
-    free = np.setdiff1d(np.arange(rows.size), held)
-    s = np.sqrt(np.diag(covariance)[free])
-    return mass + float(_log_mass((lo - z)[free] / s, (hi - z)[free] / s).sum())
-
-
-def _log_mass(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
-    """log of the standard normal's mass between lo and hi, safe far out in either tail."""
-    flip = lo > 0.0
-    lo, hi = np.where(flip, -hi, lo), np.where(flip, -lo, hi)
-    upper, lower = log_ndtr(hi), log_ndtr(lo)
-    return upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-12)))
+    (inside,) = log_shares_inside(
+        found.z[None, rows], found.covariance[np.ix_(rows, rows)][None], *reduced.box[:, None, rows]
+    )
+    return found.log_evidence + float(inside)
 
 
 def weigh_sets(reduced: Reduced, sets: Sequence[tuple[str, ...]]) -> list[tuple[tuple[str, ...], float]]:
@@ -264,26 +240,16 @@ def _opened(
     """Log evidence when the spikes of each of `sets` become slabs beside those of `held` (`start`: the
     posterior under `held`)."""
     rows = {name: reduced.rows((name,)) for name in {n for chosen in sets for n in chosen}}
-    own = reduced.rows(held)
+    own, lo, hi = reduced.rows(held), *reduced.box
     spike = np.broadcast_to(reduced.spike, len(reduced.unknowns))
-    out = []
-    for chosen in sets:
-        at = np.concatenate([rows[name] for name in chosen])
-        open_up = 1.0 - 1.0 / spike[at] ** 2  # what a spike's precision loses when it becomes a slab
-        inner = start.covariance[np.ix_(at, at)]
-        K = np.eye(at.size) + inner * open_up
-        mean = open_up * np.linalg.solve(K, start.z[at])
-        change = (
-            -0.5 * float(start.z[at] @ mean)
-            - 0.5 * float(np.linalg.slogdet(K)[1])
-            + float(np.log(spike[at]).sum())
-        )
-        both = np.concatenate([at, own])
-        cross = start.covariance[np.ix_(both, at)]
-        wide = start.covariance[np.ix_(both, both)] - cross @ (open_up[:, None] * np.linalg.solve(K, cross.T))
-        where = start.z[both] - cross @ mean
-        out.append((chosen, start.log_evidence + change + _inside(reduced, both, where, wide)))
-    return out
+    at = [np.concatenate([rows[name] for name in chosen]) for chosen in sets]
+    out = np.zeros(len(sets))
+    for size in {x.size for x in at}:
+        alike = np.array([i for i, x in enumerate(at) if x.size == size])
+        slabs = slabs_for(start.z, start.covariance, spike, np.stack([at[i] for i in alike]), own)
+        inside = log_shares_inside(slabs.mean, slabs.covariance, lo[slabs.rows], hi[slabs.rows])
+        out[alike] = start.log_evidence + slabs.change + inside
+    return list(zip(sets, out.tolist(), strict=True))
 
 
 def probabilities(weighed: Sequence[Hypothesis]) -> np.ndarray:

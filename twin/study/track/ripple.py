@@ -9,7 +9,6 @@ likelier than an even one, the voyages say (`case.settle`): a sharp turn looks a
 from dataclasses import replace
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from twin.study.track.smooth_motion import running_mean
 from twin.study.track.track import Track
@@ -37,6 +36,8 @@ def shaken(track: Track, time: float) -> Track:
 
 def _lately(values: np.ndarray, steps: int) -> np.ndarray:
     """Median over the readings within so many steps of each; none where there are none."""
+    from scipy.ndimage import median_filter  # heavy, and not every verb asks how readings scatter
+
     there = np.flatnonzero(np.isfinite(values))
     if not there.size:
         return np.zeros(values.size)
