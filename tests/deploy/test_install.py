@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.deploy.copied_environments import copying_python
+
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
 
@@ -30,22 +32,15 @@ def wheel(tmp_path_factory):
     return next(folder.glob("shiptwin-*.whl"))
 
 
+PYTHON = {}
+
+
 @pytest.fixture(scope="module", autouse=True)
 def ready(tmp_path_factory):
-    """A python3 that makes environments by copying one, in a tenth of the time; the first installation
-    (`two_versions`) makes its own as a ship does."""
-    folder = tmp_path_factory.mktemp("ready")
-    subprocess.run(["python3", "-m", "venv", folder / "made"], check=True, capture_output=True, timeout=180)
-    program = folder / "python3"
-    copied = f'cp -a "{folder}/made" "$3.copy" && mv "$3.copy"/* "$3" && rmdir "$3.copy"'
-    program.write_text(f'#!/bin/sh\nif [ "$1 $2" = "-m venv" ]; then {copied}; else exec python3 "$@"; fi\n')
-    program.chmod(0o755)
-    PYTHON["PYTHON"] = str(program)
+    """Environments are copied; the first installation (`two_versions`) makes its own as a ship does."""
+    PYTHON["PYTHON"] = str(copying_python(tmp_path_factory.mktemp("ready")))
     yield
     PYTHON.clear()
-
-
-PYTHON = {}
 
 
 def tried(name, root, *arguments, **env):

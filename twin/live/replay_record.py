@@ -14,7 +14,7 @@ from twin.live.prediction.due_predictions import Watch
 from twin.live.prediction.judge import VerifiedPrediction
 from twin.live.seen import Seen
 
-MOST = 24_000  # moments that are kept; of a longer voyage every second, fourth, ...
+MOMENTS_KEPT = 24_000  # moments that are kept; of a longer voyage every second, fourth, ...
 AHEAD = (*STATES, "place", "turn", "held", "radius", "half_turn", "level")
 GAP_TICKS = 15  # a reason that is away for less is still there
 SPANS = 300  # of one reason; where it comes and goes oftener, short absences count as presence
@@ -35,7 +35,7 @@ class Kept:
         self._due = self.every
         for name, column in self.columns.items():
             column.append(row.get(name, nan))
-        if len(next(iter(self.columns.values()))) >= MOST:
+        if len(next(iter(self.columns.values()))) >= MOMENTS_KEPT:
             self.columns = {name: column[::2] for name, column in self.columns.items()}
             self.every *= 2
 
