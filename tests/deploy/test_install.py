@@ -15,6 +15,7 @@ from tests.deploy.copied_environments import copying_python
 
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
+PYTHON = {}
 
 
 @pytest.fixture(scope="module")
@@ -30,9 +31,6 @@ def wheel(tmp_path_factory):
     if done.returncode != 0:
         pytest.skip(f"no wheel can be built here: {done.stderr.strip().splitlines()[-1:]}")
     return next(folder.glob("shiptwin-*.whl"))
-
-
-PYTHON = {}
 
 
 @pytest.fixture(scope="module", autouse=True)
