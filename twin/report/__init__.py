@@ -7,6 +7,15 @@ they are there: `command` (what was typed), `files` {ship, voyages} (for the com
 `voyages` (provenance), `data_checks`, `notes`, `history`. What the page needs and `result` lacks (horizons,
 channels, where, worst_windows, unexplained_force, switched_off) is computed from tracks and model."""
 
-from twin.report.page import write
+from typing import Any
 
 __all__ = ["write"]
+
+
+def __getattr__(name: str) -> Any:
+    """The function that writes a page, imported when it is asked for: who wants a table needs no study."""
+    if name != "write":
+        raise AttributeError(f"module 'twin.report' has no attribute {name!r}. It has: write.")
+    from twin.report.page import write
+
+    return write

@@ -1,9 +1,12 @@
-"""The routes: thin over the project's files, its jobs, and the Python interface."""
+"""The routes: thin over the project's files, its jobs, and the Python interface.
+
+What the first picture does not need (the study, the reports) is imported when it is first asked for."""
 
 import tempfile
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import anyio
@@ -13,22 +16,15 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from twin import __version__, whole
+from twin import __version__
 from twin.errors import SettingsError, TwinError, UsageError
-from twin.physics.effects import catalogue
 from twin.physics.ship import load, save
-from twin.recording.map_file import read_map
-from twin.report.catalogue import as_table
-from twin.studio import trials
-from twin.studio.answers import difference
 from twin.studio.jobs import SHOWN, Jobs
 from twin.studio.live import Live
 from twin.studio.project import Project, unchanged
-from twin.studio.project_report import page
-from twin.studio.remedies import edited
 from twin.studio.replies import Do, answered, body_of, page_files, toml_name
 from twin.studio.verbs import checked, files_of
-from twin.study.update.removal import remove
+from twin.studio.written_map import write_map
 
 MAX_UPLOAD = 1 << 30  # bytes of a file
 TURN_S = 0.2  # between two looks at what waits
@@ -107,6 +103,13 @@ class Studio:
 
         return Route(path, answered(asked), methods=["POST"])
 
+    @property
+    def trials(self) -> ModuleType:
+        """What a ship does before it is sailed (trials.py)."""
+        from twin.studio import trials
+
+        return trials
+
     async def _file(self, request: Request) -> Response:
         kind, data = self.page[request.url.path]
         return Response(data, headers={"Content-Type": kind})
@@ -126,25 +129,32 @@ class Studio:
         }
 
     async def form(self, request: Request) -> Any:
-        return trials.form()
+        return self.trials.form()
 
     async def effects(self, request: Request) -> Any:
+        from twin.physics.effects import catalogue
+        from twin.report.catalogue import as_table
+
         return [as_table(effect) for effect in catalogue().values()]
 
     async def report(self, request: Request) -> Any:
         """The project as it stands, as one page."""
+        from twin.studio.project_report import page
+
         headers = {"Content-Disposition": 'attachment; filename="project.html"'}
         return Response(await run_in_threadpool(page, self.project), media_type="text/html", headers=headers)
 
     async def ship(self, request: Request) -> Any:
         path = self.project.existing(request.path_params["name"])
-        return await run_in_threadpool(lambda: trials.described(load(path)))
+        return await run_in_threadpool(lambda: self.trials.described(load(path)))
 
     async def turn(self, request: Request) -> Any:
         ship, voyage = (self.project.existing(request.query_params.get(k, "")) for k in ("ship", "voyage"))
-        return await run_in_threadpool(lambda: trials.measured_turn(str(voyage), load(ship)))
+        return await run_in_threadpool(lambda: self.trials.measured_turn(str(voyage), load(ship)))
 
     async def differ(self, request: Request) -> Any:
+        from twin.studio.answers import difference
+
         one, other = (
             str(self.project.existing(request.query_params.get(k, ""))) for k in ("before", "after")
         )
@@ -154,25 +164,25 @@ class Studio:
     async def try_ship(self, request: Request) -> Any:
         said = await body_of(request)
         ship, warnings = await run_in_threadpool(
-            trials.made, str(said.get("name") or "ship"), said.get("values")
+            self.trials.made, str(said.get("name") or "ship"), said.get("values")
         )
-        told = await run_in_threadpool(trials.described, ship)
-        command = trials.command(ship.name, said["values"], str(said.get("output") or "SHIP.toml"))
+        told = await run_in_threadpool(self.trials.described, ship)
+        command = self.trials.command(ship.name, said["values"], str(said.get("output") or "SHIP.toml"))
         return told | {"warnings": warnings, "command": command}
 
     async def save_ship(self, request: Request) -> Any:
         said = await body_of(request)
         output = self.project.new(toml_name(said.get("output")))
-        ship, _ = await run_in_threadpool(trials.made, str(said.get("name") or ""), said.get("values"))
+        ship, _ = await run_in_threadpool(self.trials.made, str(said.get("name") or ""), said.get("values"))
         save(ship, output)
         return {"output": output.name}
 
     async def remove(self, request: Request) -> Any:
+        from twin.study.update.removal import remove
+
         said = await body_of(request)
-        output, ship = (
-            self.project.new(toml_name(said.get("output"))),
-            self.project.existing(str(said.get("ship"))),
-        )
+        output = self.project.new(toml_name(said.get("output")))
+        ship = self.project.existing(str(said.get("ship")))
         save(remove(load(ship), [str(name) for name in said.get("effects", [])]), output)
         return {"output": output.name}
 
@@ -215,33 +225,25 @@ class Studio:
         ):
             raise SettingsError(f"{name}: is there already and is no map. Choose another name.")
         unchanged(path, said.get("base"))
-        self._write_map(path, str(said.get("text", "")))
+        write_map(path, str(said.get("text", "")))
         return {"name": name}
 
     async def remedy(self, request: Request) -> Any:
         """Writes what a check asks for into the map."""
+        from twin.studio.remedies import edited
+
         said = await body_of(request)
         name, text, edit = toml_name(said.get("name")), str(said.get("text", "")), said.get("edit")
         if not isinstance(edit, dict):
             raise UsageError("a remedy says which entries of the map it changes.")
         unchanged(self.project.path(name), text)
         try:
-            self._write_map(self.project.path(name), edited(text, edit))
+            write_map(self.project.path(name), edited(text, edit))
         except (ValueError, KeyError, TypeError) as error:
             raise SettingsError(
                 f"{name}: this remedy does not fit the map: {error}. Edit the map itself."
             ) from None
         return {"name": name}
-
-    def _write_map(self, path: Path, text: str) -> None:
-        with tempfile.NamedTemporaryFile("w", suffix=".toml", encoding="utf-8") as trial:
-            trial.write(text)
-            trial.flush()
-            try:
-                read_map(Path(trial.name))
-            except SettingsError as error:
-                raise SettingsError(str(error).replace(trial.name, path.name)) from None
-        whole.write(path, text)
 
     async def jobs_told(self, request: Request) -> Any:
         return await run_in_threadpool(self.jobs.all_told)
