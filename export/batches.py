@@ -33,7 +33,7 @@ class TrainingSamples:
     def __len__(self) -> int:
         return self.h.numel()
 
-    def situation(self, k: torch.Tensor) -> Situation:
+    def situation(self, k: torch.Tensor | slice) -> Situation:
         """The situations of the samples k."""
         return Situation(**{name: x[k] for name, x in self.fields.items()})
 
@@ -120,7 +120,9 @@ def windows(
         k = leg.starts(STRIDE * steps, max(1, round(stride_s / leg.h)))
         at = k + STRIDE * np.arange(steps + 1)[:, None]
         state = leg.state[at] - np.where(np.arange(6) < 2, leg.state[k], 0.0)
-        starts.append(state[0]), wanted.append(state[1:]), h.append(np.full(k.size, STRIDE * leg.h))
+        starts.append(state[0])
+        wanted.append(state[1:])
+        h.append(np.full(k.size, STRIDE * leg.h))
         group.append(BLOCKS * i + (leg.t[k] // block_s).astype(int))
         for name in names:
             inputs[name].append(leg.inputs[name][at])

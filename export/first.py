@@ -50,16 +50,23 @@ class Run(NamedTuple):
 class Trunk(torch.nn.Module):
     """zeta -> phi -> W phi, in units of the force scale."""
 
+    offset: torch.Tensor  # mean of each input
+    scale: torch.Tensor  # and its spread
+
     def __init__(self, offset: np.ndarray, scale: np.ndarray):
         super().__init__()
         sizes = [len(NAMES)] + [FEATURES] * LAYERS
         self.layers = torch.nn.ModuleList(torch.nn.Linear(a, b) for a, b in itertools.pairwise(sizes))
-        for layer in self.layers:
+        for layer in self.linear_layers():
             torch.nn.init.xavier_uniform_(layer.weight)
             torch.nn.init.zeros_(layer.bias)
         self.W = torch.nn.Parameter(torch.zeros(3, FEATURES))
         self.register_buffer("offset", torch.tensor(offset, dtype=torch.float32))
         self.register_buffer("scale", torch.tensor(scale, dtype=torch.float32))
+
+    def linear_layers(self) -> list[torch.nn.Linear]:
+        """The trunk's layers, the first one first."""
+        return [layer for layer in self.layers if isinstance(layer, torch.nn.Linear)]
 
     def phi(self, zeta: torch.Tensor) -> torch.Tensor:
         """(..., 64) of zeta (..., inputs), not yet scaled."""
@@ -169,7 +176,7 @@ def trunk_onnx(trunk: Trunk) -> bytes:
     from onnx import TensorProto, checker, helper, numpy_helper
 
     nodes, weights, source = [], [], "zeta"
-    for i, layer in enumerate(trunk.layers):
+    for i, layer in enumerate(trunk.linear_layers()):
         out = "phi" if i == LAYERS - 1 else f"x{i}"
         w, b = layer.weight.detach().numpy(), layer.bias.detach().numpy()
         weights += [numpy_helper.from_array(w, f"w{i}"), numpy_helper.from_array(b, f"b{i}")]
@@ -226,7 +233,9 @@ def manifest(
             "mean": [float(x) for x in phi.mean(0)],
             "components": [[float(x) for x in row] for row in directions[:COMPONENTS] / deviations[:, None]],
         },
-        "spectral_norms": [float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in trunk.layers],
+        "spectral_norms": [
+            float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in trunk.linear_layers()
+        ],
         "golden": {
             "inputs": [[float(x) for x in row] for row in golden],
             "outputs": [[float(x) for x in row] for row in answers],

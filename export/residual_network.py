@@ -30,15 +30,22 @@ AIR = ("air_ahead", "air_starboard")
 class ResidualNetwork(torch.nn.Module):
     """zeta -> f; called with a Situation of tensors it gives the force in newtons."""
 
+    # of each input: mean, spread, and the range in which the network is believed; the most that it may say
+    offset: torch.Tensor
+    scale: torch.Tensor
+    low: torch.Tensor
+    high: torch.Tensor
+    bound: torch.Tensor
+
     def __init__(self, ship: Ship, names: Sequence[str], zeta: np.ndarray):
         super().__init__()
         self.ship, self.names, self.S = ship, tuple(names), scale_of(ship)
         sizes = [len(self.names)] + [WIDTH] * LAYERS
         self.layers = torch.nn.ModuleList(torch.nn.Linear(a, b) for a, b in pairwise(sizes))
         self.last = torch.nn.Linear(WIDTH, 3, bias=False)
-        for layer in (*self.layers, self.last):
+        for layer in (*self.linear_layers(), self.last):
             torch.nn.init.xavier_uniform_(layer.weight)
-        for layer in self.layers:
+        for layer in self.linear_layers():
             torch.nn.init.zeros_(layer.bias)
         low, high = zeta.min(0), zeta.max(0)
         wide = np.maximum(high - low, 0.05)  # what hardly varied in the data
@@ -50,6 +57,10 @@ class ResidualNetwork(torch.nn.Module):
             ("bound", np.float32(np.inf)),
         ):
             self.register_buffer(name, torch.tensor(value, dtype=torch.float32))
+
+    def linear_layers(self) -> list[torch.nn.Linear]:
+        """The trunk's layers, the first one first."""
+        return [layer for layer in self.layers if isinstance(layer, torch.nn.Linear)]
 
     def trunk(self, x: torch.Tensor) -> torch.Tensor:
         """(..., inputs), scaled -> phi (..., 64)."""

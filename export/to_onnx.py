@@ -22,8 +22,8 @@ OPSET, COMPONENTS, GOLDEN = 17, 4, 8
 def trunk(network: ResidualNetwork) -> bytes:
     """zeta, already scaled, float32 (1, n) -> phi (1, 64)."""
     nodes, weights, source = [], [], "zeta"
-    for i, layer in enumerate(network.layers):
-        out = "phi" if layer is network.layers[-1] else f"x{i}"
+    for i, layer in enumerate(network.linear_layers()):
+        out = "phi" if i == len(network.layers) - 1 else f"x{i}"
         weights += [
             numpy_helper.from_array(x.detach().numpy(), f"{n}{i}")
             for n, x in (("w", layer.weight), ("b", layer.bias))
@@ -70,7 +70,7 @@ def manifest(
         **limits(network),
         "whitening": whitening(phi),
         "spectral_norms": [
-            float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.layers
+            float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.linear_layers()
         ],
         "golden": {"inputs": x.tolist(), "outputs": answers.tolist()},
         "training": training,

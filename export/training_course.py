@@ -197,7 +197,7 @@ class TrainingCourse:
 
     def validation(self, stage: str) -> float:
         """The loss of the averaged weights on the validation part: the geometric mean over its voyages."""
-        network = self.mean.module
+        network = self._averaged()
         if stage == "paper":
             many = len(self.data["validation"].samples)
             return float(
@@ -207,8 +207,13 @@ class TrainingCourse:
             )
         return float(self._by_voyage(network, stage, "validation").clamp(min=1e-12).log().mean().exp())
 
+    def _averaged(self) -> ResidualNetwork:
+        """The network with the averaged weights."""
+        assert isinstance(self.mean.module, ResidualNetwork)
+        return self.mean.module
+
     def _copy(self) -> dict[str, Any]:
-        return {name: x.detach().clone() for name, x in self.mean.module.state_dict().items()}
+        return {name: x.detach().clone() for name, x in self._averaged().state_dict().items()}
 
     def _kept(self) -> dict[str, Any] | None:
         if self.keep is None or not self.keep.exists():

@@ -16,7 +16,7 @@ import torch
 
 from export.residual_network import ResidualNetwork
 from twin.physics import core
-from twin.physics.model import CORE, Model
+from twin.physics.model import CORE, Eta_nu, Model
 from twin.physics.state import LIGHT, Force, Growth, Situation
 
 ODD = ("sway", "yaw", "rudder", "air_starboard", "wave_starboard", "roll")
@@ -34,7 +34,8 @@ class HeldOutLoss:
 
 def needed(model: Model, rate: torch.Tensor, grown: Growth = LIGHT) -> torch.Tensor:
     """(B, 3) M nu_dot in newtons, where the added mass has `grown`."""
-    return torch.stack(core.force_for(*rate.unbind(-1), model.c, grown), -1)  # type: ignore[arg-type]
+    u_dot, v_dot, r_dot = rate.unbind(-1)
+    return torch.stack(core.force_for(u_dot, v_dot, r_dot, model.c, grown), -1)
 
 
 def known(model: Model, s: Situation) -> torch.Tensor:
@@ -94,7 +95,9 @@ def free_run(
     as asking the network twice."""
     held = HeldOutLoss()
     moving = replace(model, residual=held) if network is not None else model
-    state, kept, last = tuple(start.unbind(-1)), [], None
+    x, y, psi, u, v, r = start.unbind(-1)
+    state: Eta_nu = x, y, psi, u, v, r
+    kept, last = [], None
     for k in range(next(iter(inputs.values())).shape[0] - 1):
         now = {name: x[k] for name, x in inputs.items()}
         if network is not None:
@@ -111,13 +114,16 @@ def free_run(
     return torch.stack(kept)
 
 
-def _onward(
-    model: Model, state: tuple[torch.Tensor, ...], s: Situation, h: torch.Tensor
-) -> tuple[torch.Tensor, ...]:
+def _onward(model: Model, state: Eta_nu, s: Situation, h: torch.Tensor) -> Eta_nu:
     """One step by the midpoint rule: half the work of Model.step, and at STRIDE steps as near to the truth as
     the model is."""
-    half = [x + 0.5 * h * k for x, k in zip(state, model.derivative(state, s), strict=True)]
-    return tuple([x + h * k for x, k in zip(state, model.derivative(tuple(half), s), strict=True)])  # type: ignore[arg-type]
+    half = _along(state, model.derivative(state, s), 0.5 * h)
+    return _along(state, model.derivative(half, s), h)
+
+
+def _along(state: Eta_nu, slope: Eta_nu, h: torch.Tensor) -> Eta_nu:
+    x, y, psi, u, v, r = [a + h * k for a, k in zip(state, slope, strict=True)]
+    return x, y, psi, u, v, r
 
 
 def allowed(model: Model) -> torch.Tensor:
