@@ -11,16 +11,15 @@ from twin.commands.next_command import after_instruments
 from twin.commands.verb_output import lines_to, progress, with_request
 from twin.errors import SettingsError
 from twin.physics.ship import Ship, load
+from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.recording.ship_file_writer import save
 
-NOTHING = "no fault of an instrument was seen: nothing to write. Leave out -o."
 EPILOG = """A circle to each side or a figure eight of ten minutes or more says most; rudder and shaft need
-not be recorded. -o: with --ship the ship file with what was seen as effects of its instruments; without, the
-lines of a map. Exit code 4: a voyage cannot be used; 5: the ship file or map is not valid, or nothing was
-found that could be written (docs/instruments.md).
-"""
+not be recorded. -o: with --ship the ship file with what was seen as effects of its instruments; without, a
+map. Exit code 4: a voyage cannot be used; 5: ship file or map not valid, or nothing to write
+(docs/instruments.md)."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,6 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.voyages(parser, "voyages of one ship: logs or tables")
     add, turned = parser.add_argument, "what turned the velocity over ground into the ship's axes"
     add("--map", metavar="MAP.toml", help="the files' own columns, units, signs and clock")
+    arguments.repeated(parser, "--source", "[CHANNEL=]NAME", "the instrument to ask of several")
     arguments.ship(parser, "its length bounds where antennas may be; -o writes into it", False)
     add("--velocity-by", choices=FRAMES, help=f"{turned} (else: as recorded, or as the data say)")
     arguments.as_json(parser)
@@ -36,8 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship, by = load(args.ship) if args.ship else None, read_map(Path(args.map)) if args.map else None
-    voyages, page = [read_voyage(path, by, controls=False) for path in args.voyages], lines_to(args)
-    done = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress)
+    voyages = [read_voyage(p, by, sources_of(args.source), controls=False) for p in args.voyages]
+    done, page = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress), lines_to(args)
     print("\n".join(done.text()), file=page)
     if args.output:
         _write(args, ship, done)
@@ -54,7 +54,7 @@ def _write(args: argparse.Namespace, ship: Ship | None, done: InstrumentCheck) -
     if ship is None:
         return whole.write(args.output, done.as_map())
     if not done.faults:
-        raise SettingsError(f"-o {args.output}: {NOTHING}")
+        raise SettingsError(f"-o {args.output}: no fault of an instrument was seen. Leave out -o.")
     save(done.corrected(ship), args.output, args.ship)
     for left in done.not_held(ship):
         print(f"not written, as no effect holds it: {left}", file=sys.stderr)

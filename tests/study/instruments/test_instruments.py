@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import twin
+from tests.recording.conftest import motion, nmea_lines, sentence
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.cli import main
@@ -143,6 +144,22 @@ def test_the_verb_writes_json_and_a_ship_file_that_loads(healthy, write_csv, tmp
     lag = next(e for e in load(out).effects if type(e).__name__ == "HeadingLag")
     assert lag.lag == pytest.approx(2.0, abs=0.2) and lag.turned == 0.0
     assert "shown by the residuals of" in capsys.readouterr().out
+
+
+def test_of_two_compasses_on_one_bus_each_can_be_asked(tmp_path, capsys):
+    """Test: HE is right, GP comes 3 s late. Expected: the late one is named, the other one not."""
+    m, path = motion(600), tmp_path / "bridge.log"
+    late_psi = np.interp(m["t"] - 3.0, m["t"], m["psi"])
+    second = [sentence(f"GPHDT,{psi:.2f},T") for psi in late_psi]
+    path.write_text("".join(f"{s}\n" for i in range(600) for s in [*nmea_lines(m, i), second[i]]))
+    seen = {}
+    for name in ("HE", "GP"):
+        source, answer = f"heading_true_north_deg={name}", tmp_path / f"{name}.json"
+        assert main(["instruments", str(path), "--source", source, "--json", str(answer)]) == 0
+        seen[name] = {f["effect"] for f in json.loads(answer.read_text())["faults"]}
+    assert "HeadingLag" in seen["GP"] and "HeadingLag" not in seen["HE"]
+    assert main(["instruments", str(path), "--source", "heading_true_north_deg=XX"]) == 5
+    assert "its sources are GP, HE" in capsys.readouterr().err
 
 
 def test_in_python_it_is_the_verbs_json_a_line_a_page_and_a_corrected_ship(healthy, write_csv):
