@@ -13,7 +13,7 @@ help:  ## these words
 demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what its owner finds
 	$(BIN)/twin demo
 
-test: lint types tests paper  ## the same with the tools of development: ruff, mypy, all tests and the paper's tables in small
+test: lint types tests  ## the same with the tools of development: ruff, mypy and all tests, the paper's tables in small among them
 
 lint: $(VENV)/.development  ## ruff
 	$(BIN)/ruff check .
@@ -25,7 +25,7 @@ tests: $(VENV)/.development  ## pytest: what is inside its budget, alone; then t
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --ignore tests/bench/test_tick.py
 
-paper: $(VENV)/.development  ## the paper's tables in small: two minutes
+paper: $(VENV)/.development  ## the paper's tables in small, printed: two minutes
 	OMP_NUM_THREADS=1 $(BIN)/twin-bench paper --quick
 
 bench: $(VENV)/.development  ## the budget: 12 ms and 48 MB
