@@ -12,7 +12,7 @@ from tests.report import pages
 from tests.report.boat import straight_with_a_turn
 from twin import cli
 from twin.commands.story import MONDAY, SHIP
-from twin.live.replay_record import MOST, SPANS, Kept, Spans
+from twin.live.replay_record import MOMENTS_KEPT, SPANS, Kept, Spans
 from twin.recording.write import write_voyage
 from twin.report.curves import Curve, Curves, drawn, thinned
 from twin.report.history_page import history_page, steps_of
@@ -201,15 +201,15 @@ def test_the_same_replay_gives_the_same_sum_and_another_log_another_one(replayed
 def test_what_a_replay_keeps_is_bounded_and_still_covers_the_voyage():
     """Test: ten times as many moments as are kept, and a word that comes and goes each other one."""
     kept, spans = Kept(["time_s", "x"]), Spans()
-    for k in range(10 * MOST):
+    for k in range(10 * MOMENTS_KEPT):
         kept.take({"time_s": float(k), "x": 2.0 * k})
         if k % 40 < 20:
             spans.take(float(k), ["flickers"], 1.5)
     t, x = (np.array(kept.columns[name]) for name in ("time_s", "x"))
-    assert MOST // 2 <= t.size < MOST and t[0] == 0.0 and t[-1] > 9.9 * MOST
+    assert MOMENTS_KEPT // 2 <= t.size < MOMENTS_KEPT and t[0] == 0.0 and t[-1] > 9.9 * MOMENTS_KEPT
     assert set(np.diff(t)) == {float(kept.every)} and (x == 2.0 * t).all()
     found = spans.of["flickers"]
-    assert 1 <= len(found) <= SPANS and found[0][0] == 0.0 and found[-1][1] > 9.9 * MOST
+    assert 1 <= len(found) <= SPANS and found[0][0] == 0.0 and found[-1][1] > 9.9 * MOMENTS_KEPT
 
 
 def test_a_drawing_keeps_the_peaks_of_what_it_thins():

@@ -201,13 +201,16 @@ def test_the_model_run_once_to_the_longest_horizon_ends_where_each_prediction_by
 def test_noise_models_side_by_side_give_each_what_it_gives_alone(make, kvlcc2):
     """Test: a ship once 30 m off after two minutes; a coarse noise model and a fine one. Expected: all three
     runs of each to the last digit, and the coarse one farther off."""
-    t, floors = track(make(seconds=600.0), kvlcc2), [NoiseModel(), NoiseModel((0.4, 0.4, 0.4), flow=0.05)]
+    t, noise_models = (
+        track(make(seconds=600.0), kvlcc2),
+        [NoiseModel(), NoiseModel((0.4, 0.4, 0.4), flow=0.05)],
+    )
     held_out = [{"horizon_s": 120.0, "position_m": 30.0, "heading_deg": 1.0}]
     model = Model.of(replace(kvlcc2, notes={"structural": {"held_out": held_out}}))
-    together = predict_each(t, model, floors, [60.0], leads=1)
-    for floor, found in zip(floors, together, strict=True):
+    together = predict_each(t, model, noise_models, [60.0], leads=1)
+    for noise_model, found in zip(noise_models, together, strict=True):
         np.testing.assert_array_equal(
-            found.promised, predict(t, model, [60.0], floor=floor, leads=1).promised
+            found.promised, predict(t, model, [60.0], noise_model=noise_model, leads=1).promised
         )
     fine, coarse = (mean(w, "position", 60.0, STRUCTURE) for w in together)
     assert coarse > 1.2 * fine
