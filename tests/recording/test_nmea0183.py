@@ -103,6 +103,13 @@ def test_two_talkers_are_kept_apart_and_one_can_be_chosen(tmp_path, sailed):
         read_voyage(path, sources={"heading_true_north_deg": "XX"})
 
 
+def test_of_a_table_no_instrument_can_be_chosen(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("time_s,heading_true_north_deg\n0,1\n1,2\n")
+    with pytest.raises(SettingsError, match="one column for each quantity and names no instruments"):
+        read_voyage(path, sources={"heading_true_north_deg": "GP"})
+
+
 def test_midnight_passes_without_a_date(tmp_path):
     lines = [
         sentence(f"GPGLL,5700.0000,N,01100.0000,E,{t // 3600 % 24:02d}{t // 60 % 60:02d}{t % 60:02d},A,A")

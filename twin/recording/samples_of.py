@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.errors import DataError, did_you_mean
+from twin.errors import DataError, SettingsError, did_you_mean
 from twin.live.signals.channels import BY_NAME
 from twin.recording.cells import number_keys
 from twin.recording.formats import Format, recognised
@@ -31,10 +31,17 @@ from twin.recording.timebase import (
 
 
 def raw_of(path: Path, by: Map | None, sources: Sources) -> Raw:
-    """The samples of a file in border units, by the reader of its format."""
+    """The samples of a file in border units, by the reader of its format. SettingsError: an instrument is to
+    be chosen of a file that has one column for each quantity."""
     if is_zip(path):
         return of_zip(path, by, sources)
     kind = recognised(path)
+    if sources and not (kind and kind.series):
+        channel, name = next(iter(sources.items()))
+        raise SettingsError(
+            f"--source {channel}{'=' * bool(channel)}{name}: {path} has one column for each quantity and "
+            "names no instruments. Choose the column by a map."
+        )
     if kind is None and path.is_dir():
         return joined([path], by)
     if kind is None:
