@@ -1,19 +1,21 @@
-"""Live: the bridge's page (docs/view.md) of a running twin, or of a log of one, inside the workbench."""
+"""Live: the bridge's page (docs/view.md) of a running twin, or of a log of one, inside the workbench; what
+it needs is imported when a twin is looked at, not before the first picture."""
 
 import json
 import time
 from threading import Thread
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import anyio
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response, StreamingResponse
 
 from twin.errors import UsageError
-from twin.live.bridge.feed import BridgeFeed, BusFeed, LogFeed
 from twin.live.bridge.server import MAX_BODY, pages
-from twin.live.bridge.watch import BridgeWatch
-from twin.live.signals import config
+
+if TYPE_CHECKING:
+    from twin.live.bridge.feed import BridgeFeed
+    from twin.live.bridge.watch import BridgeWatch
 
 WAIT_S = 2.0  # for a frame, before it is asked whether the viewer is still there
 MOST_VIEWERS = 16
@@ -29,6 +31,10 @@ class Live:
 
     def attach(self, connect: str | None, log: str | None) -> str:
         """Looks at the twin at `connect` (default: on this computer), or at a log; the feed's name."""
+        from twin.live.bridge.feed import BusFeed, LogFeed
+        from twin.live.bridge.watch import BridgeWatch
+        from twin.live.signals import config
+
         self.leave()
         feed: BridgeFeed
         if log:
@@ -68,7 +74,7 @@ class Live:
             return PlainTextResponse(f"{MOST_VIEWERS} pages are open already.\n", 503)
         return StreamingResponse(self._frames(watch, request), media_type="text/event-stream")
 
-    async def _frames(self, watch: BridgeWatch, request: Request) -> Any:
+    async def _frames(self, watch: "BridgeWatch", request: Request) -> Any:
         self._viewers += 1
         try:
             number, trail = 0, -1

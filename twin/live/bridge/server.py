@@ -12,10 +12,13 @@ from http.cookies import CookieError, SimpleCookie
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from threading import BoundedSemaphore, Lock
+from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
 from twin.errors import TwinError
-from twin.live.bridge.watch import BridgeWatch
+
+if TYPE_CHECKING:
+    from twin.live.bridge.watch import BridgeWatch
 
 HOST = "127.0.0.1"
 MOST_VIEWERS = 16  # event streams at a time
@@ -71,7 +74,7 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = True
 
-    def __init__(self, watch: BridgeWatch, port: int, said: Callable[[str], None]):
+    def __init__(self, watch: "BridgeWatch", port: int, said: Callable[[str], None]):
         try:
             super().__init__((HOST, port), Handler)
         except (OSError, OverflowError) as failure:
