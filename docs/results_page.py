@@ -28,6 +28,7 @@ CASES, CASES_PAGE, DECISION_PAGE = RESULTS / "cases.csv", RESULTS / "cases.md", 
 JUDGEMENT_PAGE = RESULTS / "judgement.md"
 BEGIN, END = "<!-- cases: made by docs/results_page.py -->", "<!-- end of cases -->"
 DECISIONS, FLEET = "python -m bench.decisions FOLDER", "python -m bench.fleet run FOLDER"
+REAL, POND = "twin-bench real", "python -m bench.real.esso_osaka FOLDER"
 
 
 class Voyages(NamedTuple):
@@ -44,6 +45,9 @@ OF_DECISIONS = {  # first word of a case's name -> its voyages
     "kvlcc2": Voyages("reference sea", DECISIONS, "2026-11-25"),
     "esso": Voyages("a tanker's model in a pond", DECISIONS, "2026-11-25"),
     "others": Voyages("third-party simulations", DECISIONS, "2026-11-25"),
+    "hsva": Voyages("a 7 m model in a tank, faults put into its readings", REAL, "2026-11-26"),
+    "marin": Voyages("a model in a tank, at the ship's scale, faults put into its readings", REAL, "2026-11-26"),
+    "pond": Voyages("a tanker's model in a pond, faults put into its readings", POND, "2026-11-26"),
 }
 OF_FLEET = Voyages("random ships of many forms", FLEET, "2026-11-26")
 
