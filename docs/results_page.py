@@ -46,7 +46,7 @@ OF_DECISIONS = {  # first word of a case's name -> its voyages
     "esso": Voyages("a tanker's model in a pond", DECISIONS, "2026-11-25"),
     "others": Voyages("third-party simulations", DECISIONS, "2026-11-25"),
     "hsva": Voyages("a 7 m model in a tank, faults put into its readings", REAL, "2026-11-26"),
-    "marin": Voyages("a tank model, as given at ship scale, faults put into its readings", REAL, "2026-11-26"),
+    "marin": Voyages("a tank model at ship scale, faults put into its readings", REAL, "2026-11-26"),
     "pond": Voyages("a tanker's model in a pond, faults put into its readings", POND, "2026-11-26"),
 }
 OF_FLEET = Voyages("random ships of many forms", FLEET, "2026-11-26")
