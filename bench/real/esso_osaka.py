@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from bench.decisions.pond import begun_esso, pond_voyage
+from bench.fleet.fleet_page import by_hand
 from bench.real.esso_page import page
 from bench.real.planted_faults import FAULTS, PlantedFault
 from twin.physics.ship import Ship
@@ -155,7 +156,7 @@ def main() -> int:
                 file.write(json.dumps(row) + "\n")
             print(*asked.key(), row["verdict"], row["missing"], file=sys.stderr, flush=True)
     if args.page:
-        args.page.write_text(page(rows_of(out)))
+        args.page.write_text(page(rows_of(out)) + by_hand(args.page))
     return 0
 
 
