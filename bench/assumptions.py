@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bench import bench_output
+from bench.promised_bound import promised_bound
 from bench.reference import SeaCase, simulate
 from bench.sea_disturbance import sailed
 from bench.stability.adversary_loop import LoopCase, Loops
@@ -134,7 +135,7 @@ def sailed_through(scenario: BrokenAssumption, recording) -> KeptPromise:
         if t >= LEFT_OUT_S:
             score.take(
                 tick.certificate.inside,
-                np.abs(np.array((e.u, e.v, e.r)) - truth[:, k]) / loop.stabilizer.tube.beta,
+                np.abs(np.array((e.u, e.v, e.r)) - truth[:, k]) / promised_bound(loop),
             )
             why = loop.stabilizer.outside or loop.stabilizer.broken
             said[why] = said.get(why, 0) + bool(why)

@@ -12,6 +12,7 @@ from bench import bench_output
 from bench.assumptions import BEGIN_S, STEP_S, WALL
 from bench.instrument_lies import rows_of
 from bench.lie_kinds import LIES, Lie, Row
+from bench.promised_bound import promised_bound
 from bench.reference import SeaCase, simulate
 from bench.sea_disturbance import sailed
 from twin.live.build import loop_of
@@ -115,7 +116,7 @@ def one(
         if new and said_s is None:
             said_s, word = (t - begins_s if begins_s == begins_s else 0.0), new[0]
         e = loop.observer.estimate
-        error = np.abs(np.array((e.u, e.v, e.r)) - truth[:, k]) / loop.stabilizer.tube.beta  # type: ignore[union-attr]
+        error = np.abs(np.array((e.u, e.v, e.r)) - truth[:, k]) / promised_bound(loop)
         ticks += 1
         if tick.certificate.inside:
             inside += 1

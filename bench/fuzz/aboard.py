@@ -11,6 +11,7 @@ from typing import Any
 
 from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, SteppedVoyage
 from bench.fuzz.take import Take
+from bench.promised_bound import promised_bound
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
@@ -120,7 +121,7 @@ class FuzzedVoyage:
         if c.inside:
             self.inside += 1
             (_, _, _, u, v, r), _ = self.sailed.truth(self.k)
-            beta = self.loop.stabilizer.tube.beta  # type: ignore[union-attr]
+            beta = promised_bound(self.loop)
             errors = abs(e.u - u), abs(e.v - v), abs(e.r - r)
             kept = all(x <= b for x, b in zip(errors, beta, strict=True))
             _demand(kept or not self.honest, f"a promise that is not kept: {errors} {beta}")
