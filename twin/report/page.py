@@ -17,6 +17,7 @@ from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.unexplained import energy
 from twin.study.reference.sailed import switched_off
 from twin.study.reference.structure import noise_model_of
+from twin.study.track.jumps import jumps_in_words, jumps_on
 from twin.study.track.track import Track
 
 PLOTS = ("number.js", "dom.js", "plot.js", "keys.js", "track.js", "sections.js", "voyage.js")
@@ -96,7 +97,7 @@ def _whole(
     if "unexplained_force" not in result:
         result["unexplained_force"] = energy(tracks, [model] * len(tracks)).unexplained()
     result.setdefault("switched_off", switched_off(model, tracks))
-    result["told_of_waves"] = waves_in_words(waves_on(tracks))
+    result["told_of_waves"] = [*waves_in_words(waves_on(tracks)), *jumps_in_words(jumps_on(tracks))]
     return result
 
 

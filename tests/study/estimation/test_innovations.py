@@ -10,7 +10,7 @@ from twin.physics.effects import catalogue
 from twin.study.estimation.columns import core_unknowns, effect_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import linearise
-from twin.study.reference.structure import noise_model_of, structural_noise
+from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import READINGS, track
 
@@ -48,6 +48,43 @@ def test_how_far_the_position_that_satellites_show_strays_is_found(judged, wande
     assert found < 0.03 if wander == 0.0 else found == pytest.approx(wander, rel=0.35)
 
 
+@pytest.mark.parametrize("wander", [0.0, 2e-3])
+def test_how_far_the_heading_that_a_compass_shows_strays_is_found(judged, wander):
+    """Test: a heading with white noise of 0.1 deg, and one that strays by 0.11 deg in a second, 0.9 in a minute,
+    beside a gyro that does not. Expected: found within a third."""
+    t, model, unknowns = judged
+    rng, sd = np.random.default_rng(7), np.radians(0.1)
+    steps = wander * np.sqrt(t.h) * rng.standard_normal(len(t))
+    shown = t.measured.copy()
+    shown[:, 2] = t.state[:, 2] + sd * rng.standard_normal(len(t)) + np.cumsum(steps)
+    strayed = replace(t, measured=shown, sd=np.r_[t.sd[:2], sd, t.sd[3:]])
+    found = structural_noise(
+        [linearise(strayed, model, unknowns, catalogue())], unknowns, noise_model_of(model.ship)
+    ).heading_wander
+    assert found < 4e-4 if wander == 0.0 else found == pytest.approx(wander, rel=0.35)
+
+
+def test_a_receiver_that_errs_moves_the_place_that_it_shows(judged):
+    """Test: a place and a velocity over ground with one error of 0.15 m/s that lasts 8 s. Expected: the ship is not
+    tossed by it, and what errs is found within half."""
+    t, model, unknowns = judged
+    rng, left = np.random.default_rng(7), np.exp(-t.h / 8.0)
+    error = np.zeros((len(t), 2))
+    for k in range(1, len(t)):
+        error[k] = left * error[k - 1] + 0.15 * np.sqrt(1.0 - left**2) * rng.standard_normal(2)
+    c, s = np.cos(t.state[:, 2]), np.sin(t.state[:, 2])
+    shown = t.measured.copy()
+    shown[:, :2] += np.cumsum(error, axis=0) * t.h
+    shown[:, 3] += c * error[:, 0] + s * error[:, 1]
+    shown[:, 4] += c * error[:, 1] - s * error[:, 0]
+    erring = replace(t, measured=shown)
+    start = noise_model_of(model.ship)
+    found = structural_noise([linearise(erring, model, unknowns, catalogue())], unknowns, start)
+    speed = float(model.ship.scale("speed"))
+    assert found.velocity_error * speed == pytest.approx(0.15, rel=0.5)
+    assert max(found.white[:2]) < 4.0 * max(start.white[:2])
+
+
 def test_a_damaged_floor_in_the_ship_file_is_one_line(tanker):
     table = {**tanker.notes["structural"], "floor": {**tanker.notes["structural"]["floor"], "wander": "far"}}
     with pytest.raises(
@@ -80,7 +117,7 @@ def test_each_axis_has_a_fast_part_of_its_own(judged):
         - np.column_stack([np.convolve(np.cumsum(s), np.ones(9) / 9, "same") for s in speed.T])
     )
     before, after = (
-        structural_noise([linearise(x, model, unknowns, catalogue())], unknowns)
+        structural_noise_beside([linearise(x, model, unknowns, catalogue())], unknowns, NoiseModel())
         for x in (t, replace(t, measured=shown))
     )
     assert min(after.white[:2]) > 3.0 * max(before.white[:2]) and after.white[2] <= 2.0 * before.white[2]

@@ -7,6 +7,7 @@ from twin.recording.checks import losses
 from twin.study.calibration.core_fit import PARTS
 from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
+from twin.study.track.jumps import jumps_in_words
 
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
@@ -59,7 +60,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         "is allowed for and not called missing"
         for name in result["too_faint"]
     ]
-    lines += [f"  {text}" for text in waves_in_words(result["waves"])]
+    lines += [f"  {text}" for text in (*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"]))]
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [

@@ -34,6 +34,7 @@ from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.steering_gear import gears_of, with_or_without_gear
 from twin.study.reference.structure import structural_noise
 from twin.study.reference.weather_baseline import FAINT
+from twin.study.track.jumps import jumps_on
 from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1
@@ -235,6 +236,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
         "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
         "waves": waves_on(core.tracks),
+        "jumps": jumps_on(core.tracks),
         "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
         "usual": significantly_there(after, lasting_ones),
         "between_voyages": lasting_ones["between_voyages"],

@@ -166,6 +166,10 @@ class Case:
         return any(part in chosen for name in chosen for part in self.catalogue[name].holds)
 
 
+# of the fast part at least, in surge, sway and yaw, of a standard acceleration
+Levels = tuple[float, float, float]
+
+
 def settle(case: Case) -> Case:
     """The same case with the fast part of the noise model and the readings' scatter as these voyages show
     them (waves, a worn sensor).
@@ -173,22 +177,34 @@ def settle(case: Case) -> Case:
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
     white, time = case.noise_model.white, float(case.model.ship.scale("time"))
-    grid = [
-        (float(level), sensor)
-        for sensor in (1.0, 3.0)
-        for level in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)
-    ]
-    noise_models = [_rougher(case.noise_model, *factors) for factors in grid]
+    steps = [float(x) for x in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)]
+    grid: list[tuple[Levels, float]] = [((x, x, x), sensor) for sensor in (1.0, 3.0) for x in steps]
     uneven = tuple(_uneven(x, time) for x in case.lines)
 
-    def scores(lines: Sequence[Linear]) -> list[float]:
+    def scores(lines: Sequence[Linear], tried: Sequence[tuple[Levels, float]] = grid) -> list[float]:
+        noise_models = [_rougher(case.noise_model, *factors) for factors in tried]
         return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, noise_models)]
 
     lines, told = case.lines, scores(case.lines)
     if any(x.track.ripple is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
         lines, told = uneven, shaky
-    best = int(np.argmax(told))
-    return replace(case, lines=lines, noise_model=noise_models[best], path=_rougher(case.path, *grid[best]))
+    levels, sensor = grid[int(np.argmax(told))]
+    for axis in range(3):  # what tosses the ship in one of them need not do so in the others
+        lower = [_with(levels, axis, x) for x in steps if x < levels[axis] > white[axis]]
+        if lower:
+            tried = [(t, sensor) for t in (levels, *lower)]
+            levels = tried[int(np.argmax(scores(lines, tried)))][0]
+    return replace(
+        case,
+        lines=lines,
+        noise_model=_rougher(case.noise_model, levels, sensor),
+        path=_rougher(case.path, levels, sensor),
+    )
+
+
+def _with(levels: Levels, axis: int, level: float) -> Levels:
+    surge, sway, yaw = (level if i == axis else x for i, x in enumerate(levels))
+    return surge, sway, yaw
 
 
 def _uneven(line: Linear, time: float) -> Linear:
@@ -196,8 +212,7 @@ def _uneven(line: Linear, time: float) -> Linear:
     return replace(line, shown=shown, track=replace(line.track, ripple=shown.ripple))
 
 
-def _rougher(noise_model: NoiseModel, white: float, sensor: float) -> NoiseModel:
-    """The noise model with a fast part of at least `white` in each axis, and so many times the readings'
-    scatter."""
-    surge, sway, yaw = (max(white, w) for w in noise_model.white)
+def _rougher(noise_model: NoiseModel, levels: Levels, sensor: float) -> NoiseModel:
+    """The noise model with a fast part of at least these, and so many times the readings' scatter."""
+    surge, sway, yaw = (max(level, w) for level, w in zip(levels, noise_model.white, strict=True))
     return replace(noise_model, white=(surge, sway, yaw), sensor=sensor * noise_model.sensor)

@@ -35,6 +35,7 @@ from twin.study.diagnosis.verdict import (
 )
 from twin.study.estimation.start import waves_on
 from twin.study.reference.healthy import Healthy
+from twin.study.track.jumps import jumps_on
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST_PROBABILITY likely, and no more than this
@@ -137,6 +138,7 @@ def diagnose(
         },
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
+        "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],
         "data_checks": of_voyages([*voyages, *references], ship),
         "facts": facts.as_json(),

@@ -20,6 +20,7 @@ from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.prediction.openloop import coarse, predict_each
 from twin.study.prediction.windows import MODEL, STRUCTURE, Windows
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
+from twin.study.reference.path_error import of_ship as path_error_of
 from twin.study.reference.structure import once_off
 from twin.study.track.track import Track
 
@@ -144,10 +145,20 @@ def open_loop_check(
 def _expected_errors(case: Case) -> dict[str, float]:
     """[m] by noise scenario: what noise and structure alone would make of the path."""
     steps = dict(zip(SCENARIOS, _usual(case, case.scenarios(list(SCENARIOS))), strict=True))
-    # what is run free is a core alone, and no better than it was when nothing was wrong
-    least = max(steps["coarse"], measured_error_m(case))
-    known = roughly(case)
-    return {name: float(np.hypot(max(m, least), known)) for name, m in steps.items()}
+    # what is run free is a core alone, and as good as it was when nothing was wrong
+    level, known = _level(case, steps["coarse"]), roughly(case)
+    return {name: float(np.hypot(level * max(m, steps["coarse"]), known)) for name, m in steps.items()}
+
+
+def _level(case: Case, coarse_m: float) -> float:
+    """How much farther off than noise and structure have it the ship ended on its reference voyages [1]; no
+    nearer than that in a file whose calibration did not compare the two."""
+    path = path_error_of(case.model.ship)
+    levels = [path.level_at(horizon_s(t, case.model)) for t in case.tracks] if path else []
+    known = [level for level in levels if level is not None]
+    if not known:
+        return max(1.0, measured_error_m(case) / coarse_m)
+    return float(np.exp(np.mean(np.log(known))))
 
 
 def plain(h: Hypothesis) -> Hypothesis:

@@ -6,6 +6,7 @@ from twin.num import as_given, num, percent
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import waves_in_words
+from twin.study.track.jumps import jumps_in_words
 
 PUSHED = 3  # moments that are told
 
@@ -41,7 +42,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"{n} was no stronger than on the reference voyages: it is allowed for, and not called missing."
         for n in result["as_on_references"]
     ]
-    lines += waves_in_words(result["waves"])
+    lines += [*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"])]
     if result["not_visible"]:
         lines.append(
             "Too small to be seen in these voyages, even at a plausible size: "

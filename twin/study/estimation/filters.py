@@ -19,6 +19,9 @@ BENDS = [2, 3, 4, 5, 9, 10]  # what accelerations depend on: heading, velocities
 STATES = 11
 # in a sea; WAVE is what pushes it in each axis
 SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)
+ERROR = slice(-2, None)  # behind all others, where a receiver errs: north, east
+HEADING = 2
+GROUND = slice(3, 5)  # readings of velocity over ground
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 
@@ -39,6 +42,8 @@ class Stretches:
     turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
     bends: np.ndarray | None = None  # (T, S, 3, 6, P)
     swing: np.ndarray | None = None  # (T, S, 12, 12) what takes the waves a step on
+    # (T, S, 2, 2) from north and east to the readings of velocity over ground, where a receiver errs
+    erring: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,17 @@ class NoiseVariances:
     reading: np.ndarray  # (T, W, S, 8)
     new: np.ndarray  # (T, W, S, 11) of each of the ship's states, in one step
     waves: np.ndarray | None = None  # (T, S, 12, 12) of the waves' own, in one step
+    error: "ReceiverError | None" = None
+
+
+@dataclass(frozen=True)
+class ReceiverError:
+    """Of a velocity that a receiver shows beside the true one, and that moves its place along: how much of it
+    a step of h [s] leaves, and the variance [m2/s2] of what is new in it."""
+
+    h: np.ndarray  # (S,)
+    left: np.ndarray  # (W, S)
+    new: np.ndarray  # (W, S)
 
 
 class RunsAway(DataError, np.linalg.LinAlgError):
@@ -66,9 +82,11 @@ class Filters:
         self.turned = 1 + np.array(list(stretches.turns), int)
         if stretches.turns:  # of all columns at once
             self.turns = np.concatenate(list(stretches.turns.values()), axis=-2)
-        self.on = _On(stretches.F, stretches.swing)
+        self.on = _On(stretches.F, stretches.swing, noise.error)
         self.light = _On(
-            stretches.F.astype(LIGHT), None if stretches.swing is None else stretches.swing.astype(LIGHT)
+            stretches.F.astype(LIGHT),
+            None if stretches.swing is None else stretches.swing.astype(LIGHT),
+            noise.error,
         )
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
@@ -77,11 +95,17 @@ class Filters:
         their covariance is none."""
         stretches, H = self.stretches, self.stretches.H[k]
         E = stretches.shown[k] - self.H[k] @ self.X[..., SHIP, :]
+        if stretches.erring is not None:
+            E[..., GROUND, :] -= stretches.erring[k].astype(LIGHT) @ self.X[..., ERROR, :]
         if self.turned.size:
             more = self.turns[k] @ (E[..., :1] - stretches.shown[k][..., :1])
             E[..., self.turned] += more.reshape(*E.shape[:2], -1, E.shape[2]).swapaxes(-1, -2)
         HC = H @ self.C[..., SHIP, :]
+        if stretches.erring is not None:
+            HC[..., GROUND, :] += stretches.erring[k] @ self.C[..., ERROR, :]
         S = HC[..., SHIP] @ H.swapaxes(-1, -2)
+        if stretches.erring is not None:
+            S[..., GROUND] += HC[..., ERROR] @ stretches.erring[k].swapaxes(-1, -2)
         _diagonal(S)[...] += self.unread[k]
         try:
             L = np.linalg.cholesky(S)
@@ -112,6 +136,8 @@ class Filters:
         _diagonal(self.C)[..., SHIP] += self.noise.new[k]
         if self.noise.waves is not None:
             self.C[..., WAVES, WAVES] += self.noise.waves[k]
+        if self.noise.error is not None:
+            _diagonal(self.C)[..., ERROR] += self.noise.error.new[..., None]
 
     def _runs_away(self, k: int) -> RunsAway:
         growth = np.abs(np.linalg.eigvals(self.stretches.F[max(k - 1, 0)])).max()
@@ -125,19 +151,27 @@ class Filters:
 
 class _On:
     """What takes states a step on: the ship by F, pushed by the waves as by what is slow; the waves by
-    themselves."""
+    themselves; what a receiver errs by moves its place, and fades."""
 
-    def __init__(self, F: np.ndarray, swing: np.ndarray | None) -> None:
+    def __init__(self, F: np.ndarray, swing: np.ndarray | None, error: "ReceiverError | None") -> None:
         self.F, self.swing, self.pushed = F, swing, F[..., SLOW].copy()
         self.pushed[..., SLOW, :] = 0.0
+        # by what a receiver's error moves its place in a step, and how much of it is left
+        self.error: tuple[np.ndarray, ...] = (
+            () if error is None else tuple(x[..., None, None].astype(F.dtype) for x in (error.h, error.left))
+        )
 
     def __call__(self, k: int, M: np.ndarray) -> np.ndarray:
         """Of M (W, S, n, ...) at step k."""
-        ship = self.F[k] @ M[..., SHIP, :]
-        if self.swing is None:
-            return ship
-        ship += self.pushed[k] @ M[..., WAVE, :]
-        return np.concatenate([ship, self.swing[k] @ M[..., WAVES, :]], axis=-2)
+        parts = [self.F[k] @ M[..., SHIP, :]]
+        if self.swing is not None:
+            parts[0] += self.pushed[k] @ M[..., WAVE, :]
+            parts.append(self.swing[k] @ M[..., WAVES, :])
+        if self.error:
+            h, left = self.error
+            parts[0][..., PLACE, :] += h * M[..., ERROR, :]
+            parts.append(left * M[..., ERROR, :])
+        return np.concatenate(parts, axis=-2) if len(parts) > 1 else parts[0]
 
 
 def _diagonal(M: np.ndarray) -> np.ndarray:

@@ -21,16 +21,17 @@ import numpy as np
 from twin.study.estimation.abreast import Where, abreast, beside_each
 from twin.study.estimation.filters import (
     FLOW,
+    GROUND,
+    HEADING,
     LIGHT,
     MOTION,
     PLACE,
-    SHIP,
     SLOW,
     SPEEDS,
     STATES,
-    WAVES,
     Filters,
     NoiseVariances,
+    ReceiverError,
     Stretches,
 )
 from twin.study.estimation.linear import MEMORY_B, MEMORY_C, Linear
@@ -54,6 +55,9 @@ class NoiseModel:
     of U_0; `sensor`: factor on the readings' scatter;
     `wander`: how far the position that satellites show strays from itself in one second, and sqrt(t) times
         as far in t [m/sqrt(s)];
+    `heading_wander`: the same of the heading that a compass or a pair of antennas shows [rad/sqrt(s)];
+    `velocity_error`: of the velocity over ground that a receiver shows, and moves its place by, as a share of
+        U_0, and `velocity_error_s`: how long it lasts [s] (first-order Gauss-Markov);
     `doubt`: share of the force of the effects under judgement that may be something else (none on a
         reference voyage).
     """
@@ -65,6 +69,9 @@ class NoiseModel:
     sensor: float = 1.3
     wander: float = 0.0
     doubt: float = 0.0
+    heading_wander: float = 0.0
+    velocity_error: float = 0.0
+    velocity_error_s: float = 2.0
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "NoiseModel":
         """The same with its slow part, its fast part and the water's flow times these factors."""
@@ -83,7 +90,8 @@ def innovate(
     """Filter every segment of every track (or an even choice of `most`), under every noise model, side by
     side; the normal equations for each noise model."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
-    stretches, noise = _stretches(lines, where), _noise(lines, noise_models, where)
+    stretches = _stretches(lines, where, any(n.velocity_error > 0.0 for n in noise_models))
+    noise = _noise(lines, noise_models, where)
     filters, sums = (
         Filters(stretches, noise, _start(lines, noise_models, where)),
         Sums(len(noise_models), len(where), stretches.shown.shape[-1] - 1),
@@ -94,7 +102,7 @@ def innovate(
     return sums.normals(stretches.here, tuple(where))
 
 
-def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
+def _stretches(lines: Sequence[Linear], where: Where, erring: bool) -> Stretches:
     e, defect = abreast([x.e for x in lines], where, np.nan), abreast([x.defect for x in lines], where)
     spread, here = abreast([_spread(x) for x in lines], where), np.isfinite(e)
     shown = beside_each(np.where(here, e, 0.0), [x.R for x in lines], where)
@@ -114,7 +122,14 @@ def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
         if lines[0].bends is None
         else abreast([x.bends for x in lines if x.bends is not None], where),
         swing=abreast([waves.swinging(x.track) for x in lines], where) if _in_waves(lines) else None,
+        erring=abreast([_erring(x) for x in lines], where) * here[..., GROUND, None] if erring else None,
     )
+
+
+def _erring(line: Linear) -> np.ndarray:
+    """(N, 2, 2) what a receiver's error to the north and east is of the velocities ahead and to starboard."""
+    c, s = np.cos(line.track.state[:, 2]), np.sin(line.track.state[:, 2])
+    return np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], -2)
 
 
 def _turns(lines: Sequence[Linear], where: Where) -> dict[int, np.ndarray]:
@@ -140,12 +155,24 @@ def _noise(lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: W
         slow = new_b[:, None] * abreast([_slow(x, noise_model) for x in lines], where)
         out = np.zeros((*slow.shape[:2], STATES))
         out[..., PLACE] = (noise_model.wander**2 * h)[:, None]
+        out[..., HEADING] = noise_model.heading_wander**2 * h
         out[..., SPEEDS] = (np.array(noise_model.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
         out[..., SLOW], out[..., FLOW] = slow, (new_c * (noise_model.flow * speed) ** 2)[:, None]
         new.append(out)
     reading = [abreast([_reading(x.track, f) for x in lines], where) for f in noise_models]
     swell = abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
-    return NoiseVariances(np.stack(reading, axis=1), np.stack(new, axis=1), swell)
+    return NoiseVariances(
+        np.stack(reading, axis=1), np.stack(new, axis=1), swell, _receiver_error(noise_models, h, speed)
+    )
+
+
+def _receiver_error(noise_models: Sequence[NoiseModel], h: np.ndarray, speed: float) -> ReceiverError | None:
+    """What a receiver errs by; none where no noise model has it. `h` (S,) [s]; `speed`: U_0 [m/s]."""
+    if not any(n.velocity_error > 0.0 for n in noise_models):
+        return None
+    left = np.exp(-h / np.array([n.velocity_error_s for n in noise_models])[:, None])
+    usual = np.array([n.velocity_error * speed for n in noise_models])[:, None] ** 2
+    return ReceiverError(h, left, (1.0 - left**2) * usual)
 
 
 def _steps(lines: Sequence[Linear], where: Where) -> np.ndarray:
@@ -193,12 +220,16 @@ def _start(lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: W
             abreast([_slow(x, noise_model) for x in lines], first)[0],
             (noise_model.flow * U) ** 2,
         )
-    C = np.eye(STATES) * diagonal[..., None, :]
-    if not _in_waves(lines):
-        return C
-    out = np.zeros((*C.shape[:2], WAVES.stop, WAVES.stop))
-    out[..., SHIP, SHIP], out[..., WAVES, WAVES] = (
-        C,
-        abreast([waves.lasting(x.track) for x in lines], first)[0],
-    )
+    parts = [np.eye(STATES) * diagonal[..., None, :]]
+    if _in_waves(lines):
+        parts.append(abreast([waves.lasting(x.track) for x in lines], first)[0])
+    if any(n.velocity_error > 0.0 for n in noise_models):
+        parts.append(
+            np.eye(2) * np.array([(n.velocity_error * U) ** 2 for n in noise_models])[:, None, None, None]
+        )
+    out = np.zeros((*diagonal.shape[:2], *2 * (sum(p.shape[-1] for p in parts),)))
+    begin = 0
+    for part in parts:
+        out[..., begin : begin + part.shape[-1], begin : begin + part.shape[-1]] = part
+        begin += part.shape[-1]
     return out

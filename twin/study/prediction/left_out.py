@@ -5,6 +5,7 @@ to it (one Newton step from the common fit; Pregibon (1981) Logistic regression 
 705-724). A single voyage is left out by halves."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, STRUCTURE, Windows, predict
 from twin.study.prediction.own_water import LENGTHS, settled
 from twin.study.reference.between import ship_of, voyages
-from twin.study.reference.path_error import PRIOR, PathError, tail
+from twin.study.reference.path_error import PRIOR, PathError, level_of, tail
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
@@ -79,17 +80,20 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
         return None
     middle = _nearest(usable, LENGTHS * float(model.ship.scale("time")))
     rough = _second_moment(raw, middle, 1.0)
-    own = [settled(w, fed(m, w.track)[0], rough, middle) for w, (_, m, _) in zip(raw, parts, strict=True)]
-    learned = [_learned(own, h) for h in usable]
-    sizes = np.array([size for _, _, size in learned])
+    each = [settled(w, fed(m, w.track)[0], rough, middle) for w, (_, m, _) in zip(raw, parts, strict=True)]
+    learned = [_learned(each, h) for h in usable]
+    sizes = np.array([own.size for own in learned])
+    means = np.array([_means(raw, h) for h in usable])
+    simulated = [_means(raw, h, STRUCTURE)[0] for h in usable]
     return PathError(
         np.array(usable),
-        np.array([S for S, _, _ in learned]),
-        np.array([rho for _, rho, _ in learned]),
+        np.array([own.covariance for own in learned]),
+        np.array([own.alike for own in learned]),
         tail(np.exp(np.nanmean(np.log(sizes), axis=0))),
-        np.array([_means(raw, h) for h in usable]),
+        means,
         len(without),
         sailed(raw, middle),
+        np.array(list(map(level_of, means[:, 0], simulated, [own.windows for own in learned]))),
     )
 
 
@@ -133,9 +137,16 @@ def _second_moment(
     return np.asarray(S)
 
 
-def _learned(windows: Sequence[Windows], horizon_s: float) -> tuple[np.ndarray, float, np.ndarray]:
-    """Covariance (8, 8), correlation of a voyage's windows, and the size (V,) of each voyage's error over the
-    usual one."""
+class Learned(NamedTuple):
+    """Of one horizon."""
+
+    covariance: np.ndarray  # (8, 8)
+    alike: float  # correlation of a voyage's windows
+    size: np.ndarray  # (V,) of each voyage's error over the usual one
+    windows: float  # that are independent
+
+
+def _learned(windows: Sequence[Windows], horizon_s: float) -> Learned:
     ends = [_ends(w, horizon_s) for w in windows]
     count = [_independent(w, horizon_s) for w in windows]
     every = np.concatenate(ends)
@@ -144,7 +155,7 @@ def _learned(windows: Sequence[Windows], horizon_s: float) -> tuple[np.ndarray, 
     rho = _alike(scaled, [max(1, round(len(e) / max(n, 1.0))) for e, n in zip(ends, count, strict=True)])
     effective = sum(n / (1.0 + max(n - 1.0, 0.0) * rho) for n in count)
     size = np.array([np.sqrt(np.nanmean(np.square(z))) if z.size else np.nan for z in scaled])
-    return _second_moment(windows, horizon_s, effective), rho, size
+    return Learned(_second_moment(windows, horizon_s, effective), rho, size, effective)
 
 
 def _independent(windows: Windows, horizon_s: float) -> float:
@@ -175,10 +186,10 @@ def _alike(scaled: Sequence[np.ndarray], apart: Sequence[int]) -> float:
     return float(np.clip((OF_PRIOR * ALIKE + pairs * own) / (OF_PRIOR + pairs), 0.0, 1.0))
 
 
-def _means(windows: Sequence[Windows], horizon_s: float) -> list[float]:
+def _means(windows: Sequence[Windows], horizon_s: float, run: int = MODEL) -> list[float]:
     """Mean size of place [m], place across [m] and heading [rad], voyages counted alike."""
     out = []
     for name in ("position", "lateral", "heading"):
-        each = [w.errors()[name][w.at(horizon_s)] for w in windows]
+        each = [w.errors(run)[name][w.at(horizon_s)] for w in windows]
         out.append(float(np.mean([np.nanmean(e) for e in each if np.isfinite(e).any()])))
     return out

@@ -16,6 +16,7 @@ from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
 from twin.study.prediction.unexplained import Energy, energy
 from twin.study.reference.sailed import Sailed, fed, switched_off
 from twin.study.reference.structure import noise_model_of
+from twin.study.track.jumps import jumps_on
 
 SCHEMA_VERSION = 1
 # times what is expected, from which an error is more than it may be, where no reference voyages told how they
@@ -60,6 +61,7 @@ def compare(
         "worst_windows": locate.worst(windows, longest),
         "switched_off": switched_off(model, [s.track for s in sailed]),
         "waves": waves_on([s.track for s in sailed]),
+        "jumps": jumps_on([s.track for s in sailed]),
     }
     result["verdict"] = verdict(result)
     return ComparedVoyages(plain(result), tuple(sailed), tuple(models), tuple(windows))

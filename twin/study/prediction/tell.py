@@ -5,6 +5,7 @@ from typing import Any
 
 from twin.num import as_given, num
 from twin.study.estimation.start import waves_in_words
+from twin.study.track.jumps import jumps_in_words
 
 BAR = 24
 
@@ -24,6 +25,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         *_worst(result["worst_windows"]),
         *_off(result["switched_off"]),
         *waves_in_words(result["waves"]),
+        *jumps_in_words(result["jumps"]),
         *_checks(result["data_checks"]),
     ]
 

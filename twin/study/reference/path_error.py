@@ -59,6 +59,9 @@ class PathError:
     voyages: int = 0  # that were left out in turn; none: a prior
     # from where to where (envelope.py)
     sailed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    # (H,) by how much voyages end farther off than noise and structure alone would have them, as far as the
+    # windows tell (`level_of`); None: nobody asked
+    level: np.ndarray | None = None
 
     def at(self, horizon_s: float) -> np.ndarray:
         """(8, 8) covariance so far ahead: sizes as powers of the time between horizons; beyond the last,
@@ -81,6 +84,12 @@ class PathError:
             * np.minimum(1.0, ahead / self.horizons_s[0])
             * np.maximum(1.0, ahead / self.horizons_s[-1])
         )
+
+    def level_at(self, horizon_s: float) -> float | None:
+        """`level` so far ahead; None where nobody asked. [1]"""
+        if self.level is None:
+            return None
+        return float(np.exp(np.interp(np.log(horizon_s), np.log(self.horizons_s), np.log(self.level))))
 
     @property
     def limit95(self) -> float:
@@ -140,7 +149,7 @@ class PathError:
             "mean": {name: self.mean[:, i].tolist() for i, name in enumerate(MEANS)},
             "voyages": self.voyages,
             "sailed": {name: list(ends) for name, ends in self.sailed.items()},
-        }
+        } | ({} if self.level is None else {"level": self.level.tolist()})
 
 
 def of_ship(ship: Ship) -> PathError | None:
@@ -164,6 +173,7 @@ def of_ship(ship: Ship) -> PathError | None:
             np.column_stack([np.array(table["mean"][name], float) for name in MEANS]),
             int(table["voyages"]),
             {name: (float(low), float(high)) for name, (low, high) in table["sailed"].items()},
+            np.array(table["level"], float) if "level" in table else None,
         )
         shapes = {found.covariance.shape[0], found.alike.size, found.mean.shape[0]}
         if shapes != {found.horizons_s.size} or not found.horizons_s.size:
@@ -174,6 +184,13 @@ def of_ship(ship: Ship) -> PathError | None:
             "Calibrate the ship again."
         ) from None
     return found
+
+
+def level_of(measured_m: float, simulated_m: float, windows: float) -> float:
+    """By how much voyages end farther off than simulated, as so many independent windows tell it beside the
+    simulation, which counts for PRIOR of them. [1]"""
+    share = windows / (windows + PRIOR)
+    return float((max(measured_m, 1e-9) / max(simulated_m, 1e-9)) ** share)
 
 
 def tail(sizes: Sequence[float]) -> float:

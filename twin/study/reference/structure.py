@@ -14,6 +14,7 @@ import numpy as np
 from twin.errors import SettingsError
 from twin.physics.ship import Ship
 from twin.study.estimation.columns import Unknown
+from twin.study.estimation.filters import GROUND
 from twin.study.estimation.fit import evidence
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
@@ -28,8 +29,15 @@ BOUNDS = {
     "flow": (0.002, 0.05),
     "sensor": (0.7, 4.0),
     "wander": (5e-4, 0.5),
+    "heading_wander": (2e-5, 0.05),
+    "velocity_error": (5e-4, 0.2),
+    "velocity_error_s": (0.5, 32.0),
 }
-WANDER = 4e-3  # where the ascent begins, m/sqrt(s)
+# where the ascent begins
+WANDER, HEADING_WANDER = 4e-3, 4e-4  # m/sqrt(s), rad/sqrt(s)
+VELOCITY_ERROR, VELOCITY_ERROR_S = 0.0125, 4.0  # of U_0, s
+RECEIVERS = 4.0  # times less fast acceleration of the ship, where the receiver is taken to err
+WORTH = 3.0  # mean log probability of a voyage that a receiver's error must add
 # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
 BESIDE = 0.4
 
@@ -86,47 +94,84 @@ def structural_noise(
 ) -> NoiseModel:
     """The most probable noise model of these reference voyages (linearised about the fitted model): what the
     core alone leaves."""
-    return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS)
+    return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS, receiver=True)
 
 
 def structural_noise_beside(
     lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel
 ) -> NoiseModel:
     """The same when the unknowns are all that a diagnosis keeps in mind: less is left beside them."""
-    return _ascended(lines, unknowns, start, BESIDE, FEWER)
+    return _ascended(lines, unknowns, start, BESIDE, FEWER, receiver=False)
 
 
 def _ascended(
-    lines: Sequence[Linear], unknowns: Sequence[Unknown], noise_model: NoiseModel, least: float, most: int
+    lines: Sequence[Linear],
+    unknowns: Sequence[Unknown],
+    start: NoiseModel,
+    least: float,
+    most: int,
+    receiver: bool,
 ) -> NoiseModel:
-    sd, step, noise_model = (
-        np.array([u.sd for u in unknowns]),
-        2.0,
-        replace(noise_model, wander=noise_model.wander or WANDER),
+    sd = np.array([u.sd for u in unknowns])
+
+    def scores(noise_models: Sequence[NoiseModel]) -> list[float]:
+        return [predictive(n, sd) for n in innovate(lines, noise_models, most)] if noise_models else []
+
+    start = replace(
+        start, wander=start.wander or WANDER, heading_wander=start.heading_wander or HEADING_WANDER
     )
-    best = _scores(lines, [noise_model], sd, most)[0]
+    best, noise_model = _climbed(scores, start, least)
+    if receiver and _tossed(noise_model) and any(np.isfinite(x.e[:, GROUND]).any() for x in lines):
+        erring, noise = _climbed(scores, _of_the_receiver(noise_model), least)
+        noise_model = noise if erring > best + WORTH else noise_model
+    # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
+    few = 1.0 + 4.0 / max(len(lines), 1)
+    return noise_model.scaled(few**0.5)
+
+
+def _tossed(noise_model: NoiseModel) -> bool:
+    """Whether much more seems to toss the ship in surge or sway than where the search begins."""
+    return max(noise_model.white[:2]) > RECEIVERS * NoiseModel().white[0]
+
+
+def _of_the_receiver(noise_model: NoiseModel) -> NoiseModel:
+    """Where the climb begins if the receiver errs, and not the ship is pushed."""
+    surge, sway, yaw = noise_model.white
+    low = BOUNDS["white"][0]
+    return replace(
+        noise_model,
+        white=(max(surge / RECEIVERS, low), max(sway / RECEIVERS, low), yaw),
+        velocity_error=VELOCITY_ERROR,
+        velocity_error_s=VELOCITY_ERROR_S,
+    )
+
+
+def _climbed(
+    scores: Callable[[Sequence[NoiseModel]], list[float]], noise_model: NoiseModel, least: float
+) -> tuple[float, NoiseModel]:
+    """The most probable noise model that is reached by coordinate ascent, and its score."""
+    best, step = scores([noise_model])[0], 2.0
+    changes = [c for i, c in enumerate(CHANGES) if i < ERRING or noise_model.velocity_error > 0.0]
     while step > 1.2:
         trials = [
             (i, t)
-            for i, change in enumerate(CHANGES)
+            for i, change in enumerate(changes)
             for k in (step, 1.0 / step)
             if _inside(t := change(noise_model, k), least)
         ]
-        scores = _scores(lines, [t for _, t in trials], sd, most)
+        found = scores([t for _, t in trials])
         better: dict[int, tuple[float, NoiseModel]] = {}
-        for (i, trial), score in zip(trials, scores, strict=True):
+        for (i, trial), score in zip(trials, found, strict=True):
             if score > max(best, better.get(i, (best, noise_model))[0]):
                 better[i] = (score, trial)
         moves = sorted(better.values(), key=lambda m: -m[0])
         together = [_together(noise_model, [m for _, m in moves[:n]]) for n in range(1, len(moves) + 1)]
-        scores = [moves[0][0], *_scores(lines, together[1:], sd, most)] if moves else []
-        if moves and max(scores) > best + 0.2:
-            best, noise_model = max(scores), together[int(np.argmax(scores))]
+        found = [moves[0][0], *scores(together[1:])] if moves else []
+        if moves and max(found) > best + 0.2:
+            best, noise_model = max(found), together[int(np.argmax(found))]
         else:
             step = step**0.5
-    # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
-    few = 1.0 + 4.0 / max(len(lines), 1)
-    return noise_model.scaled(few**0.5)
+    return best, noise_model
 
 
 def _together(noise_model: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseModel:
@@ -139,26 +184,14 @@ def _together(noise_model: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseMode
 
 def _logs(noise_model: NoiseModel) -> np.ndarray:
     return np.log(
-        [
-            *noise_model.share,
-            *noise_model.white,
-            noise_model.calm,
-            noise_model.flow,
-            noise_model.sensor,
-            noise_model.wander,
-        ]
+        [*noise_model.share, *noise_model.white, *(getattr(noise_model, n) or TINY for n in SINGLE)]
     )
 
 
 def _noise_model(logs: np.ndarray) -> NoiseModel:
-    a, b, c, d, e, f, calm, flow, sensor, wander = np.exp(logs).tolist()
-    return NoiseModel((a, b, c), calm, (d, e, f), flow, sensor, wander)
-
-
-def _scores(
-    lines: Sequence[Linear], noise_models: Sequence[NoiseModel], sd: np.ndarray, most: int
-) -> list[float]:
-    return [predictive(n, sd) for n in innovate(lines, noise_models, most)] if noise_models else []
+    a, b, c, d, e, f, *rest = np.exp(logs).tolist()
+    single = {n: v if v > 2.0 * TINY else 0.0 for n, v in zip(SINGLE, rest, strict=True)}
+    return NoiseModel((a, b, c), white=(d, e, f), **single)
 
 
 def predictive(normal: Normal, sd: np.ndarray) -> float:
@@ -185,11 +218,16 @@ def _change(i: int) -> Callable[[NoiseModel, float], NoiseModel]:
     return change
 
 
-SENSOR = 8  # the place of the readings' scatter in `_logs`
-CHANGES = tuple(_change(i) for i in range(10))
+RECEIVER = ("velocity_error", "velocity_error_s")
+SINGLE = ("calm", "flow", "sensor", "wander", "heading_wander", *RECEIVER)
+TINY = 1e-12  # stands for none
+# places in `_logs` of the readings' scatter, and from where on a receiver's velocity
+SENSOR, ERRING = 8, 11
+CHANGES = tuple(_change(i) for i in range(13))
 
 
 def _inside(noise_model: NoiseModel, least: float) -> bool:
     low = {"share": least, "calm": least}
-    values = {name: np.atleast_1d(getattr(noise_model, name)) for name in BOUNDS}
-    return all(low.get(name, 1.0) * lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in values[name])
+    asked = {n: b for n, b in BOUNDS.items() if noise_model.velocity_error > 0.0 or n not in RECEIVER}
+    values = {name: np.atleast_1d(getattr(noise_model, name)) for name in asked}
+    return all(low.get(name, 1.0) * lo <= v <= hi for name, (lo, hi) in asked.items() for v in values[name])

@@ -12,12 +12,14 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.live.signals.channels import BY_NAME
+from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Situation
 from twin.recording.holes import HOLE_S, inside, longest, pieces
 from twin.recording.unknown_controls import known, of_ship
 from twin.recording.voyage import Voyage
 from twin.study.track.motion_channels import MEASURED, READINGS
+from twin.study.track.outliers import Jump, outliers, stretches_of
 from twin.study.track.smooth_motion import running_mean, smooth_motion
 
 PLACE = ("north_m", "east_m")
@@ -66,6 +68,7 @@ class Track:
     ripple: np.ndarray | None = None
     # of a ship with actuators of its own what is recorded of them, `name.attribute` in SI; else None
     orders: Mapping[str, np.ndarray] | None = None
+    jumps: tuple[Jump, ...] = ()  # stretches whose readings do not count (outliers.py)
     # behind each steering gear
     rudder: dict[Any, Any] = field(init=False, repr=False, compare=False, default_factory=dict)
 
@@ -152,26 +155,47 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
         raise DataError(
             f"{voyage.name}: {' and '.join(hold_s)} are never there together.{said} Check the map."
         )
-    state, sd = smooth_motion(measured, h, ship)
-    whole &= moved_as_read(measured, h, length_s) & known(voyage, grid.time_s, tuple(hold_s))
-    if not whole.any():
+    whole &= known(voyage, grid.time_s, tuple(hold_s))
+    made = _made(voyage.name, grid, measured, controls, whole, ship, h)
+    if not made.whole.any():
         raise DataError(
             f"{voyage.name}: controls, place and heading are never there together. Check the "
             "map, and the clocks of the instruments."
         )
+    off = outliers(made.situation(), Model.of(ship).without_inputs(made.missing())[0], h, made.whole)
+    if not off.any():
+        return made
+    made = _made(voyage.name, grid, np.where(off, np.nan, measured), controls, whole, ship, h)
+    return replace(made, jumps=stretches_of(off, made.t))
+
+
+def _made(
+    name: str,
+    grid: Voyage,
+    measured: np.ndarray,
+    controls: Mapping[str, np.ndarray],
+    whole: np.ndarray,
+    ship: Ship,
+    h: float,
+) -> Track:
+    """The track with the smooth motion under these readings; `whole` (N,): where the controls are known."""
+    length_s = float(ship.scale("time"))
+    state, sd = smooth_motion(measured, h, ship)
     weather = _weather(grid, measured, state, max(1, round(ROLLED * length_s / h)))
+    nothing = np.full(grid.time_s.size, np.nan)
+    orders = {k: np.nan_to_num(x) for k, x in controls.items() if k not in ("delta", "n")}
     return Track(
-        voyage.name,
-        grid.time_s - voyage.time_s[0],
+        name,
+        grid.time_s - grid.time_s[0],
         h,
         state,
-        np.nan_to_num(controls.pop("delta", nothing)),
-        np.nan_to_num(controls.pop("n", nothing)),
+        np.nan_to_num(controls.get("delta", nothing)),
+        np.nan_to_num(controls.get("n", nothing)),
         weather,
         measured,
         sd,
-        whole,
-        orders={k: np.nan_to_num(x) for k, x in controls.items()} or None,
+        whole & moved_as_read(measured, h, length_s),
+        orders=orders or None,
     )
 
 
