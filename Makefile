@@ -21,7 +21,7 @@ lint: $(VENV)/.development  ## ruff
 types: $(VENV)/.development  ## mypy on public signatures
 	$(BIN)/mypy
 
-tests: $(VENV)/.development  ## pytest: what is inside its budget, alone; then the rest on all cores, four at most
+tests: $(VENV)/.development  ## pytest: what is inside its budget, alone; then the rest on all cores, four processes at most
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --ignore tests/bench/test_tick.py
 

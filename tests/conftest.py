@@ -5,6 +5,8 @@ A file is the work of one process, so what its tests share is made once; the lon
 all processes end together. The mark `xdist_group` would say the same beside the tests, but pytest 9.2 does
 not hear it."""
 
+import os
+
 import pytest
 from hypothesis import settings
 
@@ -62,6 +64,8 @@ LONG = (
     "live/keelson/test_stamps.py",
 )
 FIRST = ("by the clock", "same voyages", *LONG)
+WAITING = 1  # processes more than cores: a quarter of the time a test waits, for a clock, a bus or a browser
+BEHIND = 5  # niceness of those who do not measure time
 
 
 def work(nodeid):
@@ -76,6 +80,17 @@ def pytest_collection_modifyitems(config, items):
     if hasattr(config, "workerinput"):  # alone, the order is pytest's own
         place = {name: i for i, name in enumerate(FIRST)}
         items.sort(key=lambda item: place.get(work(item.nodeid), len(FIRST)))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config):
+    return len(os.sched_getaffinity(0)) + WAITING if hasattr(os, "sched_getaffinity") else None
+
+
+def pytest_runtest_setup(item):
+    """A process steps back for good when it has no more tests that measure time; these come first."""
+    if hasattr(item.config, "workerinput") and work(item.nodeid) != "by the clock" and os.nice(0) < BEHIND:
+        os.nice(BEHIND - os.nice(0))
 
 
 @pytest.hookimpl(optionalhook=True)

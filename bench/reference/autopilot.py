@@ -50,7 +50,7 @@ class Autopilot:
         if new.any():
             self._begin(psi, new)
         mode, a, b = (f[self.rows, self.index] for f in (self.mode, self.a, self.b))
-        unit = self.h.L / self.h.U0
+        unit = self.h.unit
         error = wrap(self.course - psi)
         near = np.abs(error) < 0.2
         self.integral = limit(self.integral + np.where(near, error * dt / (20 * unit), 0), -0.1, 0.1)

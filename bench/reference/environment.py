@@ -26,6 +26,7 @@ class Environment:
         self.current_mean = np.stack([g("current_mps") * np.cos(to), g("current_mps") * np.sin(to)])
         self.spread, self.depth0, self.swing = g("current_spread_mps"), g("depth_m"), g("depth_swing")
         self.bank0 = g("bank_m")
+        self.has_bottom, self.has_bank = np.isfinite(self.depth0).any(), np.isfinite(self.bank0).any()
         one, slow = np.ones(len(hulls)), g("current_time_s")
         small = np.where(h.L < 50, 0.3, 1.0)  # gusts over a boat's track are shorter
         times = [
@@ -47,7 +48,8 @@ class Environment:
         )
         self.has_waves = bool(self.sea.a.any())
         self.current, self.has_tide, self.has_squall = None, bool(f.tide_mps.any()), bool(f.squall_mps.any())
-        self.wave_force = self.drift = self.heave = self.pitch = np.zeros(len(hulls))
+        zero = np.zeros(len(hulls))
+        self.wave_force, self.drift, self.heave, self.pitch = (zero,) * 4, (zero,) * 3, zero, zero
 
     def take(self, hulls):
         """What wind and waves must know of these hulls (`h` holds their numbers)."""
@@ -56,19 +58,23 @@ class Environment:
 
     def step(self, tick, t, north, east, psi):
         """Bring the surroundings to this tick."""
-        gust, veer, c_n, c_e, bank, self.gnss_north, self.gnss_east = self.wander.step(tick)
+        wander = self.wander.step(tick)
+        gust, veer, _, _, bank, self.gnss_north, self.gnss_east = wander
         self.wind_speed = np.maximum(self.wind_mean * (1 + self.gust * gust), 0)
         self.wind_from = self.wind_from0 + 0.07 * veer
-        self._stream(t, c_n, c_e)
-        path = (north + 0.7 * east) / (8 * self.h.L)
-        self.depth = self.depth0 * (1 + self.swing * np.sin(2 * np.pi * path))
-        self.bank = self.bank0 * np.exp(0.45 * bank)
+        self._stream(t, wander[2:4])
+        self.depth, self.bank = self.depth0, self.bank0
+        if self.has_bottom:
+            path = (north + 0.7 * east) / (8 * self.h.L)
+            self.depth = self.depth0 * (1 + self.swing * np.sin(2 * np.pi * path))
+        if self.has_bank:
+            self.bank = self.bank0 * np.exp(0.45 * bank)
         self._waves(tick, t, north, east, psi)
 
-    def _stream(self, t, c_n, c_e):
-        """Mean current, eddies and tide; and their rate of change."""
+    def _stream(self, t, eddies):
+        """Mean current, eddies (2, B) and tide; and their rate of change."""
         f, old = self.f, self.current
-        self.current = self.current_mean + self.spread * np.stack([c_n, c_e])
+        self.current = self.current_mean + self.spread * eddies
         if self.has_tide:
             turn = 2 * np.pi * t / f.tide_period
             to = f.tide_to + 0.8 * np.sin(turn)
@@ -76,8 +82,6 @@ class Environment:
         self.current_rate = np.zeros_like(self.current) if old is None else (self.current - old) / self.dt
 
     def _waves(self, tick, t, north, east, psi):
-        zero = np.zeros_like(north)
-        self.wave_force, self.drift, self.heave, self.pitch = (zero,) * 4, (zero,) * 3, zero, zero
         if self.has_waves:
             if tick % ANSWER_TICKS == 0:
                 self.answer = jonswap.transfer(self.h, self.sea, psi)

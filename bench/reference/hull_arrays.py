@@ -29,6 +29,7 @@ def _with_inertia(h):
     [ m x_G + my a_y   I_z + J_z          0   ] [r'] = [N]
     [ -my l_y             0            I_x+J_x] [p']   [K]      (Son & Nomoto 1981)
     """
+    _with_products(h)
     mass, inertia = 0.5 * h.rho * h.L**2 * h.d, 0.5 * h.rho * h.L**4 * h.d
     h.M, h.Mx, h.My = h.m * mass, h.mx * mass, h.my * mass
     h.Iz = h.M * (h.k_zz * h.L) ** 2 + h.M * h.x_G**2
@@ -38,12 +39,25 @@ def _with_inertia(h):
     h.inv_vY, h.inv_vN, h.inv_vK = h.Izz * h.Ixx / det, -a23 * h.Ixx / det, -a24 * h.Izz / det
     h.inv_rN, h.inv_rK = (a22 * h.Ixx - a24**2) / det, a23 * a24 / det
     h.inv_pK = (a22 * h.Izz - a23**2) / det
+    h.surged, h.swayed, h.off, h.rolled = h.M + h.Mx, h.M + h.My, h.M * h.x_G, h.Mx * h.l_y
     h.GZ = h.M * 9.81 * h.GM
     h.w_roll = np.sqrt(h.GZ / h.Ixx)
     h.B44 = 2 * h.roll_damping * np.sqrt(h.GZ * h.Ixx)
     h.heels = any(np.any(c) for table in (h.heel_X, h.heel_Y, h.heel_N, h.heel_K) for c in table)
     h.n0 = propeller_rate_service(h)
     return h
+
+
+def _with_products(h):
+    """What mmg.py, isherwood.py and the helmsman would else multiply out at every tick."""
+    h.unit, h.slow2, h.walking = h.L / h.U0, (0.02 * h.U0) ** 2, 0.05 * h.U0
+    h.pressed, h.spun = 0.5 * h.rho * h.L * h.d, 0.02 * 0.5 * h.rho * h.d * h.L**4
+    h.sway_yaw = [np.stack(pair) for pair in zip(h.Y, h.N, strict=True)]
+    h.disc, h.jet = h.rho * h.D_P**2, np.pi * h.rho * h.D_P**2
+    h.back, h.wake = -0.65 * h.K_T[0], 1 - h.w_P0
+    h.blade, h.outside = 0.5 * h.rho * h.A_R * h.f_alpha, 1 - h.eta
+    h.on_X, h.on_Y, h.on_N = -(1 - h.t_R), -(1 + h.a_H), -(-0.5 + h.a_H * h.x_H) * h.L
+    h.hard_over, h.fastest = np.radians(h.rudder_max), np.radians(h.rudder_rate)
 
 
 def propeller_rate_service(h):

@@ -53,5 +53,6 @@ def force(h, tables, u_air, v_air):
     near, far = tables[rows, :, low].T, tables[rows, :, low + 1].T
     cx, cy, cn = near + rest * (far - near)
     q, side = 0.5 * RHO_AIR * speed2, np.sign(v_air)
-    Y = -side * q * h.A_L * cy
-    return q * h.A_F * cx, Y, -side * q * h.A_L * h.L * cn, h.z_W * Y
+    aside = -side * q * h.A_L
+    Y = aside * cy
+    return q * h.A_F * cx, Y, aside * h.L * cn, h.z_W * Y

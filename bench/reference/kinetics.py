@@ -17,17 +17,18 @@ class Tally:
     """Sums force by origin, and the power of each hidden effect over the voyage."""
 
     def __init__(self, count):
-        self.count, self.squares = count, {}
+        self.count, self.squares, self.nothing = count, {}, np.zeros(count)
         self.clear()
 
     def clear(self):
-        self.total, self.by = [np.zeros(self.count) for _ in range(4)], {}
+        self.total, self.by = [self.nothing] * 4, {}
 
     def add(self, origin, X=0.0, Y=0.0, N=0.0, K=0.0):
-        new = (X, Y, N, K)
-        self.total = [a if isinstance(b, float) else a + b for a, b in zip(self.total, new, strict=True)]
+        for i, b in enumerate((X, Y, N, K)):
+            if not isinstance(b, float):
+                self.total[i] = self.total[i] + b
         old = self.by.get(origin)
-        self.by[origin] = new[:3] if old is None else tuple(a + b for a, b in zip(old, new[:3], strict=True))
+        self.by[origin] = (X, Y, N) if old is None else (old[0] + X, old[1] + Y, old[2] + N)
 
     def remember(self, effect, X=0.0, Y=0.0, N=0.0):
         """Note the size of a hidden effect (its sum is already among the forces)."""
@@ -47,9 +48,9 @@ class Tally:
         self.remember(effect, X, Y, N)
 
 
-def propulsion(tally, f, on, h, u, v, r, n):
+def propulsion(tally, f, on, h, there, u, n):
     """Propeller, with its wear and its walk; returns the inflow and the thrust for the rudder."""
-    u_P = mmg.inflow(h, u, v, r)
+    u_P = mmg.inflow(h, there, u)
     thrust = mmg.open_water(h, n, u_P)
     tally.add("propeller", (1 - h.t_P) * thrust)
     if on.prop_wear:
@@ -61,31 +62,31 @@ def propulsion(tally, f, on, h, u, v, r, n):
     return u_P, thrust
 
 
-def steering(tally, f, on, h, u, v, r, u_P, thrust, blade, feedback):
+def steering(tally, f, on, h, there, u_P, thrust, blade, feedback):
     """Rudder, with its wear and offset."""
-    force = mmg.rudder(h, u, v, r, u_P, thrust, blade)
+    force = mmg.rudder(h, there, u_P, thrust, blade)
     tally.add("rudder", *force)
     if on.rudder_wear:
         lost = flaws.worn_rudder(f, h, blade) - 1
         tally.hidden("RudderWear", *(lost * c for c in force))
     if on.rudder_offset or on.backlash:
-        straight = mmg.rudder(h, u, v, r, u_P, thrust, feedback)
+        straight = mmg.rudder(h, there, u_P, thrust, feedback)
         tally.remember(
             "RudderOffset" if on.rudder_offset else "RudderBacklash",
             *(a - b for a, b in zip(force[:3], straight[:3], strict=True)),
         )
 
 
-def water(tally, f, on, h, s, env):
+def water(tally, f, on, h, s, there, env):
     """The bare hull and what alters the water's grip on it."""
     u, v, r, phi = s[U], s[V], s[R], s[PHI]
-    force = mmg.hull(h, u, v, r, s[P], phi)
+    force = mmg.hull(h, there, u, r, s[P], phi)
     tally.add("hull", *force)
     if on.shallow:
         extra = [
             a - b
             for a, b in zip(
-                mmg.hull(h, u, v, r, s[P], phi, flaws.shallow(h.d / env.depth)), force, strict=True
+                mmg.hull(h, there, u, r, s[P], phi, flaws.shallow(h.d / env.depth)), force, strict=True
             )
         ]
         tally.hidden("ShallowWater", *extra)
@@ -115,9 +116,10 @@ def rate(tally, f, on, h, s, sway_acceleration, env, t, n, blade, feedback):
     """Rate of change of the state (14, B); fills the tally with the forces of this instant."""
     tally.clear()
     u, v, r, phi, p = s[U], s[V], s[R], s[PHI], s[P]
-    water(tally, f, on, h, s, env)
-    u_P, thrust = propulsion(tally, f, on, h, u, v, r, n)
-    steering(tally, f, on, h, u, v, r, u_P, thrust, blade, feedback)
+    there = mmg.angles(h, u, v, r)
+    water(tally, f, on, h, s, there, env)
+    u_P, thrust = propulsion(tally, f, on, h, there, u, n)
+    steering(tally, f, on, h, there, u_P, thrust, blade, feedback)
     pulls(tally, f, on, h, t, s[PSI])
     cos, sin = np.cos(s[PSI]), np.sin(s[PSI])
     for origin, force in env.air(s, cos, sin).items():
@@ -130,15 +132,15 @@ def rate(tally, f, on, h, s, sway_acceleration, env, t, n, blade, feedback):
         tally.hidden("Sloshing", 0.0, *force)
     X, Y, N, K = tally.total
     north_dot, east_dot = env.current_rate
-    X = X + (h.M + h.My) * v * r + h.M * h.x_G * r * r - h.M * (north_dot * cos + east_dot * sin)
+    X = X + h.swayed * v * r + h.off * r * r - h.M * (north_dot * cos + east_dot * sin)
     pull = h.M * (east_dot * cos - north_dot * sin)
-    Y, N = Y - (h.M + h.Mx) * u * r - pull, N - h.M * h.x_G * u * r - h.x_G * pull
-    K = K + h.Mx * h.l_y * u * r - h.GZ * np.sin(phi) - h.B44 * p * (1 + 8 * np.abs(p) / h.w_roll)
+    Y, N = Y - h.surged * u * r - pull, N - h.off * u * r - h.x_G * pull
+    K = K + h.rolled * u * r - h.GZ * np.sin(phi) - h.B44 * p * (1 + 8 * np.abs(p) / h.w_roll)
     w3, z3, w5, z5, m3, m5 = env.oscillator
     cu, cv = env.current[0] * cos + env.current[1] * sin, env.current[1] * cos - env.current[0] * sin
     out = np.empty_like(s)
     out[NORTH], out[EAST] = (u + cu) * cos - (v + cv) * sin, (u + cu) * sin + (v + cv) * cos
-    out[PSI], out[U] = r * np.cos(phi), X / (h.M + h.Mx)
+    out[PSI], out[U] = r * np.cos(phi), X / h.surged
     out[V] = h.inv_vY * Y + h.inv_vN * N + h.inv_vK * K
     out[R] = h.inv_vN * Y + h.inv_rN * N + h.inv_rK * K
     out[PHI], out[P] = p, h.inv_vK * Y + h.inv_rK * N + h.inv_pK * K

@@ -7,8 +7,8 @@ from bench.reference.mmg import limit
 
 def steer(h, rudder, order, dt, rate_share=1.0):
     """Next rudder angle [rad]: a first-order servo, its speed limited by the pumps."""
-    hard_over, fastest = np.radians(h.rudder_max), np.radians(h.rudder_rate) * rate_share
-    speed = (limit(order, -hard_over, hard_over) - rudder) / np.maximum(h.rudder_time, dt)
+    fastest = h.fastest * rate_share
+    speed = (limit(order, -h.hard_over, h.hard_over) - rudder) / np.maximum(h.rudder_time, dt)
     return rudder + dt * limit(speed, -fastest, fastest)
 
 

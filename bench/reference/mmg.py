@@ -13,37 +13,38 @@ def limit(x, low, high):
     return np.minimum(np.maximum(x, low), high)
 
 
-def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
-    """Force of the water on the bare hull: X, Y, N, K.
+def angles(h, u, v, r):
+    """Speed through the water [m/s] (never quite nothing), v' and r' (B,), as hull, propeller and rudder
+    take them."""
+    U = np.sqrt(u * u + v * v + h.slow2)
+    return U, v / U, limit(r * h.L / U, -R_CLIP, R_CLIP)
+
+
+def hull(h, there, u, r, p, phi, shallow=None):
+    """Force of the water on the bare hull: X, Y, N, K. `there`: what `angles` gives.
 
     MMG polynomials in v' and r' (Yasukawa & Yoshimura 2015) plus heel terms (Son & Nomoto 1981).
     Odd derivatives change sign when it goes astern; below walking pace a cross-flow yaw drag takes over.
     `shallow` multiplies resistance, sway and yaw derivatives.
     """
-    U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
-    a, b, c = limit(u / (0.05 * h.U0), -1, 1), v / U, limit(r * h.L / U, -R_CLIP, R_CLIP)
-    q = 0.5 * h.rho * h.L * h.d * U * U
-    bb, cc, ff = b * b, c * c, phi * phi
+    U, b, c = there
+    a, q = limit(u / h.walking, -1, 1), h.pressed * U * U
+    bb, cc, ff, sway, yaw = b * b, c * c, phi * phi, q, q * h.L
+    resisted = -h.R0
+    if shallow is not None:
+        resisted, sway, yaw = resisted * shallow[0], sway * shallow[1], yaw * shallow[2]
     X = q * (
-        -h.R0 * shallow[0] * u / U
+        resisted * u / U
         + h.X[0] * bb
         + h.X[1] * b * c * a
         + h.X[2] * cc
         + h.X[3] * bb * bb
         + h.heel_X[0] * ff
     )
-    Y = (
-        q
-        * shallow[1]
-        * (b * (h.Y[0] + h.Y[2] * bb + h.Y[4] * cc) + a * c * (h.Y[1] + h.Y[3] * bb + h.Y[5] * cc))
-    )
-    N = (
-        q
-        * h.L
-        * shallow[2]
-        * (a * b * (h.N[0] + h.N[2] * bb + h.N[4] * cc) + c * (h.N[1] + h.N[3] * bb + h.N[5] * cc))
-    )
-    N -= 0.02 * 0.5 * h.rho * h.d * h.L**4 * np.abs(r) * (r - c * U / h.L)
+    k = h.sway_yaw
+    (Y_b, N_b), (Y_c, N_c) = k[0] + k[2] * bb + k[4] * cc, k[1] + k[3] * bb + k[5] * cc
+    Y, N = sway * (b * Y_b + a * c * Y_c), yaw * (a * b * N_b + c * N_c)
+    N -= h.spun * np.abs(r) * (r - c * U / h.L)
     if not h.heels:
         return X, Y, N, -h.z_H * Y
     Yh, Nh, Kh = _heel(h, b, c, p * h.L / U, phi)
@@ -73,36 +74,37 @@ def open_water(h, n, u_P):
     """
     nD = n * h.D_P
     k0, k1, k2 = h.K_T
-    ahead = k0 * nD * nD + k1 * nD * u_P
-    astern = -0.65 * k0 * nD * nD - 0.35 * np.abs(k1 * nD) * np.abs(u_P)
-    return h.rho * h.D_P**2 * (np.where(n >= 0, ahead, astern) + k2 * u_P * np.abs(u_P))
+    turned, ahead = k0 * nD * nD + k1 * nD * u_P, n >= 0
+    if not ahead.all():
+        astern = h.back * nD * nD - 0.35 * np.abs(k1 * nD) * np.abs(u_P)
+        turned = np.where(ahead, turned, astern)
+    return h.disc * (turned + k2 * u_P * np.abs(u_P))
 
 
-def inflow(h, u, v, r):
+def inflow(h, there, u):
     """Axial speed at the propeller [m/s]: the wake thins with drift (Yasukawa & Yoshimura 2015)."""
-    U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
-    b = -v / U - h.x_P * limit(r * h.L / U, -R_CLIP, R_CLIP)
+    _, v1, r1 = there
+    b = -v1 - h.x_P * r1
     gain = 1 + (1 - np.exp(-h.C1 * np.abs(b))) * (np.where(b > 0, h.C2[0], h.C2[1]) - 1) + h.C_quad * b * b
-    return u * np.where(u > 0, np.minimum((1 - h.w_P0) * gain, 1.1), 1.0)
+    return u * np.where(u > 0, np.minimum(h.wake * gain, 1.1), 1.0)
 
 
-def rudder(h, u, v, r, u_P, thrust, delta, gain=1.0, gamma_gain=1.0):
+def rudder(h, there, u_P, thrust, delta):
     """Rudder in the slipstream: X, Y, N, K (Yasukawa & Yoshimura 2015).
 
     The slipstream speed comes from momentum, sqrt(u_P^2 + 8 T / (pi rho D^2)): the u_P sqrt(1 + 8 K_T / (pi
     J^2)) of the paper without its division by J, so that it also holds with the propeller stopped or
     astern.
     """
-    U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
+    U, v1, r1 = there
     sin, cos = np.sin(delta), np.cos(delta)
-    v1, r1 = v / U, limit(r * h.L / U, -R_CLIP, R_CLIP)
     lever = v1 + h.l_R * r1
-    gamma = np.where(lever < 0, h.gamma[0], h.gamma[1]) * gamma_gain
+    gamma = np.where(lever < 0, h.gamma[0], h.gamma[1])
     v_R = U * (gamma * lever + r1 * r1 * (h.r_turn[0] * r1 + h.r_turn[1] * v1))
-    jet = np.sqrt(np.maximum(u_P * u_P + 8 * thrust / (np.pi * h.rho * h.D_P**2), 0))
-    mixed = np.sqrt(h.eta * (u_P + h.kappa * (jet - u_P)) ** 2 + (1 - h.eta) * u_P**2)
+    jet = np.sqrt(np.maximum(u_P * u_P + 8 * thrust / h.jet, 0))
+    mixed = np.sqrt(h.eta * (u_P + h.kappa * (jet - u_P)) ** 2 + h.outside * u_P**2)
     u_R = h.epsilon * np.where(u_P >= 0, mixed, u_P)
     normal = u_R * sin + v_R * cos
-    F = 0.5 * h.rho * h.A_R * h.f_alpha * np.sqrt(u_R * u_R + v_R * v_R) * normal * gain
-    X, Y, N = -(1 - h.t_R) * F * sin, -(1 + h.a_H) * F * cos, -(-0.5 + h.a_H * h.x_H) * h.L * F * cos
+    F = h.blade * np.sqrt(u_R * u_R + v_R * v_R) * normal
+    X, Y, N = h.on_X * F * sin, h.on_Y * F * cos, h.on_N * F * cos
     return X, Y, N, -h.z_R * Y

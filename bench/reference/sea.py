@@ -103,6 +103,7 @@ class Sea:
             prepare(x, w, c.hidden, c.decoys, c.seed) for x, w, c in zip(calm, turned, cases, strict=True)
         ]
         self.hulls, self.weathers, numbers, self.hidden = (list(z) for z in zip(*real, strict=True))
+        self.asked = {name: any(name in x for x in self.hidden) for name in ("Wind", "WaveDrift")}
         self.h, self.f = stack(self.hulls), stack_flaws(numbers)
         self.on = SimpleNamespace(**{n: bool(getattr(self.f, n).any()) for n in flaws.FIELDS})
         self.on.ext_north = self.on.ext_north or self.on.ext_east
@@ -110,6 +111,7 @@ class Sea:
         self.known_wind, self.known_waves = (
             np.array([n in c.decoys for c in cases], float) for n in ("wind", "waves")
         )
+        self.has_known = bool(self.known_wind.any() or self.known_waves.any())
         self.env = Environment(self.hulls, self.h, self.weathers, self.f, seeds, self.dt)
         shortest = min(x.L for x in self.hulls)
         self.substeps = max(1, round(self.dt / (0.05 if shortest < 20 else 0.25)))
@@ -150,7 +152,11 @@ class Sea:
         self.s, self.old = np.zeros((14, count)), None
         self.s[kinetics.PSI], self.s[kinetics.U] = self.heading, self.h.U0 * share
         self.n, self.gear, self.blade = n_start.copy(), np.zeros(count), np.zeros(count)
-        self.orders = np.zeros((LAG_TICKS, count))
+        self.orders, self.behind = (
+            np.zeros((LAG_TICKS, count)),
+            np.rint(self.f.lag_time / self.dt).astype(int),
+        )
+        self.lags = self.f.lag_time > 0
         self.tally = kinetics.Tally(count)
 
     def _controls(self, t):
@@ -159,12 +165,12 @@ class Sea:
         heading = s[kinetics.PSI] + compass_error(f, s[kinetics.PSI])
         order, rate = self.pilot.order(t, heading, s[kinetics.R], s[kinetics.U], self.dt)
         self.orders[self.tick % LAG_TICKS] = order
-        back = np.minimum(np.rint(f.lag_time / self.dt).astype(int), min(self.tick, LAG_TICKS - 1))
-        late = self.orders[(self.tick - back) % LAG_TICKS, np.arange(len(back))]
+        back = np.minimum(self.behind, min(self.tick, LAG_TICKS - 1))
+        late = self.orders[(self.tick - back) % LAG_TICKS, self.instruments.rows]
         self.gear = machinery.steer(h, self.gear, late, self.dt, f.lag_rate)
         self.blade = machinery.play(self.blade, flaws.blade_angle(f, h, self.gear), f.backlash)
         self.n = machinery.turn_engine(h, self.n, rate, self.dt)
-        self.order = limit(order, -np.radians(h.rudder_max), np.radians(h.rudder_max))
+        self.order = limit(order, -h.hard_over, h.hard_over)
 
     def _tick(self):
         """Look at this instant: surroundings, controls, forces, instruments. The state stays."""
@@ -192,24 +198,27 @@ class Sea:
 
     def _forces(self):
         """Force by origin, (7, 3, B); and the running size of what weather does."""
-        zero, by = np.zeros(len(self.cases)), self.tally.by
-        known = [
-            self.known_wind * a + self.known_waves * b
-            for a, b in zip(by["wind"], self.env.drift, strict=True)
-        ]
-        self.tally.remember("Wind", *by["wind"])
-        self.tally.remember("WaveDrift", *self.env.drift)
+        by, zero = self.tally.by, self.tally.nothing
+        if self.has_known:
+            by["known"] = [
+                self.known_wind * a + self.known_waves * b
+                for a, b in zip(by["wind"], self.env.drift, strict=True)
+            ]
+        if self.asked["Wind"]:
+            self.tally.remember("Wind", *by["wind"])
+        if self.asked["WaveDrift"]:
+            self.tally.remember("WaveDrift", *self.env.drift)
         if self.env.has_squall:
             self.tally.remember("Squall", *by["hidden"])
-        return np.array(
-            [[zero + c for c in (known if o == "known" else by.get(o, (0.0, 0.0, 0.0)))] for o in ORIGINS]
-        )
+        nothing = (zero, zero, zero)
+        every = [zero if isinstance(c, float) else c for o in ORIGINS for c in by.get(o, nothing)]
+        return np.concatenate(every).reshape(len(ORIGINS), 3, -1) + 0.0  # -0.0 is 0.0
 
     def _true(self):
         s, env = self.s, self.env
         cos, sin = np.cos(s[kinetics.PSI]), np.sin(s[kinetics.PSI])
         north, east = env.current
-        recorded = np.where(self.f.lag_time > 0, self.order, self.gear)
+        recorded = np.where(self.lags, self.order, self.gear)
         values = (
             s[0],
             s[1],

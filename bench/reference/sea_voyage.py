@@ -86,8 +86,9 @@ def _sail(cases, tick_s):
     for i in range(rows):
         if i:
             sea.step()
-        measured[i] = [sea.row[name] for name in COLUMNS]
-        true[i], forces[i] = list(sea.true.values()), sea.forces
+        np.concatenate([sea.row[name] for name in COLUMNS], out=measured[i].reshape(-1))
+        np.concatenate(list(sea.true.values()), out=true[i].reshape(-1))
+        forces[i] = sea.forces
     return [
         _recording(sea, k, cases[k], *(a[: count[k], ..., k].copy() for a in (measured, true, forces)))
         for k in range(len(cases))

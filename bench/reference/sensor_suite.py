@@ -74,6 +74,9 @@ class SensorSuite:
         self.noisy = np.where(self.perfect, 0.0, 1.0)
         self.rows, self.any_perfect = np.arange(len(seeds)), bool(self.perfect.any())
         self.nothing = np.full(len(seeds), np.nan)
+        self.every = [max(1, round(period / dt)) for period, *_ in INSTRUMENTS.values()]
+        # a normal number that small: the share that is lost
+        self.small = 1.2533 * np.array([share for _, _, share, _ in INSTRUMENTS.values()])[:, None]
         eye = np.stack([np.random.default_rng([s, 6]).standard_normal(2) for s in seeds], 1) * self.noisy
         reported = np.array([(w.wave_height_m, w.wave_period_s, w.wave_from_deg) for w in weathers], float).T
         self.height, self.period, self.wave_from = (
@@ -96,24 +99,24 @@ class SensorSuite:
     def read(self, tick, t, true, env):
         """Measured columns of this tick, a dict of arrays (B,)."""
         e = self.noise.at(tick) * self.noisy
-        self.ring[tick % MEMORY] = [true[name] for name in DELAYED]
+        np.concatenate([true[name] for name in DELAYED], out=self.ring[tick % MEMORY].reshape(-1))
         out = dict.fromkeys(COLUMNS, self.nothing)
         out["time_s"] = np.full(len(self.rows), t)
-        for i, (name, (period, _, share, columns)) in enumerate(INSTRUMENTS.items()):
-            due = tick % max(1, round(period / self.dt)) == 0
+        lost = np.abs(self.lost.at(tick)) < self.small
+        some = lost.any(1).tolist()
+        for i, (name, (*_, columns)) in enumerate(INSTRUMENTS.items()):
+            due = tick % self.every[i] == 0
             if due or self.any_perfect:
                 getattr(self, "_" + name)(tick, true, env, out, e)
-                self._blank(
-                    out, columns, due, np.abs(self.lost.at(tick)[i]) < 1.2533 * share
-                )  # a normal number that small: `share`
+                if some[i] or not due:
+                    self._blank(out, columns, due, lost[i])
         return out
 
     def _blank(self, out, columns, due, lost):
         """NaN where the instrument has no sample at this tick, or has lost it; a perfect one has all."""
         gone = (lost if due else ~self.perfect) & ~self.perfect
-        if np.any(gone):
-            for name in columns.split():
-                out[name] = np.where(gone, np.nan, out[name])
+        for name in columns.split():
+            out[name] = np.where(gone, np.nan, out[name])
 
     def _gnss(self, tick, true, env, out, e):
         f, latency = self.f, INSTRUMENTS["gnss"][1] * self.noisy

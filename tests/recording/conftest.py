@@ -81,7 +81,7 @@ def once(duration_s: float, length_m: float, speed_mps: float, noise: float, see
     }
 
 
-@pytest.fixture(name="sail")
+@pytest.fixture(name="sail", scope="session")
 def sail_fixture():
     return sail
 

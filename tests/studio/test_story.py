@@ -74,28 +74,9 @@ def test_two_answers_are_seen_on_top_of_each_other_and_the_address_keeps_the_zoo
     page.wait("!location.hash.includes('from=2')", 5)
 
 
-def test_a_reload_in_the_middle_of_work_loses_nothing(page, project):
-    go(page, "#/diagnose")
-    press(page, "Diagnose")
-    page.wait("location.hash.startsWith('#/diagnose/0')", 30)
-    name = page.value("location.hash.split('/')[2]")
-    page.wait(
-        f"{OVER.format(name=json.dumps(name))} === 'running' && !!document.querySelector('#work progress')",
-        60,
-    )
-    page.value("location.reload()")
-    time.sleep(0.3)
-    page.wait("window.twinStudio?.drawn > 0", 30)
-    page.wait(
-        f"!!document.querySelector('#work [data-job=\"{name}\"]') || {OVER.format(name=json.dumps(name))} === 'done'",
-        30,
-    )
-    assert ended(page, "diagnose") == name
-    assert answer(project, name)["missing"] == ["HullFouling"]
-
-
-def test_a_killed_worker_is_said_and_the_work_can_be_done_again(page, project):
-    """Test: kill -9 in the middle. Expected: the page says so, the project is whole, one button begins anew."""
+def test_a_killed_worker_is_said_and_the_work_can_be_done_again_through_a_reload(page, project):
+    """Test: kill -9 in the middle; then, in the middle of the same work done again, a reload. Expected: the
+    page says what happened, the project is whole, one button begins anew, and the reload loses nothing."""
     go(page, "#/diagnose")
     press(page, "Diagnose")
     page.wait("location.hash.startsWith('#/diagnose/0')", 30)
@@ -107,11 +88,24 @@ def test_a_killed_worker_is_said_and_the_work_can_be_done_again(page, project):
     assert not born(pid)
     page.value("document.getElementById('retry').click()")
     page.wait(f"location.hash.startsWith('#/diagnose/0') && !location.hash.includes({json.dumps(name)})", 30)
-    again = ended(page, "diagnose")
+    again = page.value("location.hash.split('/')[2].split('?')[0]")
+    page.wait(
+        f"{OVER.format(name=json.dumps(again))} === 'running' && !!document.querySelector('#work progress')",
+        60,
+    )
+    page.value("location.reload()")
+    time.sleep(0.3)
+    page.wait("window.twinStudio?.drawn > 0", 30)
+    page.wait(
+        f"!!document.querySelector('#work [data-job=\"{again}\"]') || {OVER.format(name=json.dumps(again))} === 'done'",
+        30,
+    )
+    assert ended(page, "diagnose") == again
     asked = [
         json.loads((project.folder / "jobs" / n / "job.json").read_text())["asked"] for n in (name, again)
     ]
     assert asked[0] == asked[1] and answer(project, again)["files"]["voyages"] == asked[1]["voyages"]
+    assert answer(project, again)["missing"] == ["HullFouling"]
 
 
 def test_an_owners_bad_table_is_mended_by_the_button_and_imported(page, project, spoiled):

@@ -43,19 +43,37 @@ def tanker():
 
 
 @pytest.fixture(scope="session")
-def voyages():
-    """One 20 min voyage for each name in HIDDEN, a straight one, and three to calibrate on; every second
-    a sample."""
+def at_sea():
+    """All that these rooms sail for 20 min on the reference sea, by name: a voyage for each name in HIDDEN, a
+    straight one, three to calibrate on, three behind slow steering gears, one past other ships and one on
+    a day of wind, stream and fouling; every second a sample, and what was hidden. Ships that sail side by
+    side cost hardly more than one alone, and no ship feels another; who reads them writes into none."""
     cases = {
         name: SeaCase("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0)
         for i, (name, h) in enumerate(HIDDEN.items())
     }
-    cases["straight"] = SeaCase("kvlcc2", "straight", seed=950, duration_s=1200.0)
-    cases["calm"] = SeaCase("kvlcc2", "zigzag_20", seed=960, duration_s=1200.0)
-    cases["calm too"] = SeaCase("kvlcc2", "speed_changes", seed=961, duration_s=1200.0)
-    cases["calm again"] = SeaCase("kvlcc2", "mixed", seed=962, duration_s=1200.0)
+    for name, manoeuvre, seed, hidden in (
+        ("straight", "straight", 950, ()),
+        ("calm", "zigzag_20", 960, ()),
+        ("calm too", "speed_changes", 961, ()),
+        ("calm again", "mixed", 962, ()),
+        ("slow gear zigzag", "zigzag_20", 970, (("SteeringLag", 0.5),)),
+        ("slow gear", "mixed", 971, (("SteeringLag", 0.5),)),
+        ("slower gear", "mixed", 972, (("SteeringLag", 2.0),)),
+        ("passed", "zigzag_20", 909, (("PassingShip", 1.0),)),
+        ("june", "mixed", 909, (("Wind", 0.5), ("Current", 0.5), ("HullFouling", 1.0))),
+    ):
+        cases[name] = SeaCase("kvlcc2", manoeuvre, hidden=hidden, seed=seed, duration_s=1200.0)
     sailed = simulate(list(cases.values()))
-    return {name: recorded(name, r.columns, every=10) for name, r in zip(cases, sailed, strict=True)}
+    return {
+        name: (recorded(name, r.columns, every=10), r.hidden) for name, r in zip(cases, sailed, strict=True)
+    }
+
+
+@pytest.fixture(scope="session")
+def voyages(at_sea):
+    """The voyages of `at_sea`, by name."""
+    return {name: voyage for name, (voyage, _) in at_sea.items()}
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,6 @@ import json
 import os
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "tutorials" / "my-boat.md"
 REAL = Path(os.environ.get("SHIPTWIN_DATA", "")) / "blueboat"
 RUNS = {"run1": 220, "run2": 216, "run3": 230, "held": 228, "later": 223}
+ROWS = 600  # at most, of a real run: a minute, in which the boat sails a hundred lengths
 
 
 def steps():
@@ -42,7 +42,8 @@ def folder(tmp_path_factory):
         program, *words = shlex.split(command)
         if program == "python" and real:
             run = words[words.index("--csv") + 1]
-            shutil.copy(REAL / f"fixed_00000{RUNS[run.removesuffix('.csv')]}.csv", path / run)
+            rows = (REAL / f"fixed_00000{RUNS[run.removesuffix('.csv')]}.csv").read_text().splitlines(True)
+            (path / run).write_text("".join(rows[: ROWS + 1]))
             continue
         words = words if program == "python" else ["-m", "twin.cli", *words]
         done = subprocess.run(

@@ -232,7 +232,7 @@ def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_do
     the tanker nothing."""
     sailed = simulate(
         [
-            SeaCase("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=120.0)
+            SeaCase("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=60.0)
             for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))
         ]
     )

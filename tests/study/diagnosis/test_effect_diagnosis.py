@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.bundled import recorded
-from bench.reference import SeaCase, simulate
 from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue
@@ -164,12 +162,10 @@ def test_references_given_on_the_command_count_like_a_calibration(tanker, voyage
     assert np.isfinite(result["floor"]["temper"])
 
 
-def test_a_cause_is_named_beside_the_weather_of_an_ordinary_day(tanker):
+def test_a_cause_is_named_beside_the_weather_of_an_ordinary_day(tanker, voyages):
     """Test: wind and stream that the model does not know, and a fouled hull. Expected: the hull first, the
     weather in a part of its own; only what lasts is offered for the ship file."""
-    hidden = (("Wind", 0.5), ("Current", 0.5), ("HullFouling", 1.0))
-    (sailed,) = simulate([SeaCase("kvlcc2", "mixed", hidden=hidden, seed=909, duration_s=1200.0)])
-    result = diagnose([recorded("june", sailed.columns, every=10)], tanker).result
+    result = diagnose([voyages["june"]], tanker).result
     assert result["missing"][0] == "HullFouling" and result["answer"]["lasting"] == ["HullFouling"], (
         "\n".join(terminal_lines(result))
     )

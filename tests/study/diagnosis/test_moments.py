@@ -6,8 +6,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench.bundled import recorded
-from bench.reference import SeaCase, simulate
 from twin.study.diagnosis import moments as moment_of
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.effect_diagnosis import diagnose
@@ -40,18 +38,10 @@ def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(case_of):
     assert moments(case, known) == []
 
 
-@pytest.fixture(scope="module")
-def passed():
-    sailed = simulate(
-        [SeaCase("kvlcc2", "zigzag_20", hidden=(("PassingShip", 1.0),), seed=909, duration_s=1200.0)]
-    )
-    return recorded("passed", sailed[0].columns, every=10)
-
-
-def test_ships_that_pass_are_seen_when_they_pass_and_nothing_is_said_to_be_in_order(tanker, passed):
+def test_ships_that_pass_are_seen_when_they_pass_and_nothing_is_said_to_be_in_order(tanker, voyages):
     """Test: ships that pass every 11 lengths (439 s), each for about one. Expected: unknown, and the times at
     which they did."""
-    result = diagnose([passed], tanker).result
+    result = diagnose([voyages["passed"]], tanker).result
     seen = sorted(0.5 * (m["start_s"] + m["end_s"]) for m in result["moments"])
     assert result["verdict"] == "unknown" and len(seen) >= 2
     passes = np.array(seen) / (11.0 * float(tanker.scale("time")))

@@ -1,6 +1,7 @@
 """What a long voyage costs in memory while it is judged."""
 
 import tracemalloc
+from importlib import import_module
 
 import numpy as np
 
@@ -36,6 +37,7 @@ def test_linearising_holds_no_column_twice(make, kvlcc2):
 
 def test_hashing_a_voyage_does_not_read_all_of_it_into_the_memory(make, kvlcc2, on_disk, monkeypatch):
     path = on_disk(make(seed=1))
+    import_module("scipy.signal")  # else it would be loaded below, and pytest reads what it loads
     monkeypatch.setattr(
         "pathlib.Path.read_bytes",
         lambda self: (_ for _ in ()).throw(AssertionError("the whole file at once")),

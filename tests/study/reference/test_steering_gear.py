@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.bundled import recorded
-from bench.reference import SeaCase, simulate
 from twin import cli
 from twin.physics.effects import catalogue
 from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
@@ -24,20 +22,14 @@ GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 
 
 @pytest.fixture(scope="module")
-def ordered(tmp_path_factory):
+def ordered(tmp_path_factory, at_sea):
     """Two voyages of the tanker that hold the rudder's order behind a gear slower than usual, and one behind
     a gear that is slower still; what was hidden in each; and the ship calibrated on the first two."""
     folder, paths, hidden = tmp_path_factory.mktemp("gear"), {}, {}
-    for name, manoeuvre, strength, seed in (
-        ("zigzag", "zigzag_20", 0.5, 970),
-        ("mixed", "mixed", 0.5, 971),
-        ("slower", "mixed", 2.0, 972),
-    ):
-        made = simulate(
-            [SeaCase("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)]
-        )[0]
-        paths[name], hidden[name] = folder / f"{name}.mcap", made.hidden["SteeringLag"]
-        write_voyage(recorded(name, made.columns, every=10), paths[name])
+    for name, sailed in (("zigzag", "slow gear zigzag"), ("mixed", "slow gear"), ("slower", "slower gear")):
+        voyage, truth = at_sea[sailed]
+        paths[name], hidden[name] = folder / f"{name}.mcap", truth["SteeringLag"]
+        write_voyage(voyage, paths[name])
     start, out, said = folder / "start.toml", folder / "tanker.toml", folder / "said.json"
     ship = load("kvlcc2")
     save(replace(ship, effects=(catalogue()["GyroBias"].absent(ship).but(bias=GYRO),)), start)
