@@ -229,8 +229,8 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
-        "derivatives": [_row(d, ship, after) for d in core.derivatives],
-        "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
+        "derivatives": [_row(d, n, ship, after) for d in core.derivatives for n in d.unknown.names],
+        "unexcited": [n for d in core.derivatives if not d.excited for n in d.unknown.names],
         "fitted_by": by,
         **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
         "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
@@ -254,6 +254,6 @@ def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
     return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
 
 
-def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
-    before, value = (float(s.derivative(d.unknown.name)) for s in (ship, after))
-    return {"name": d.unknown.name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}
+def _row(d: Derivative, name: str, ship: Ship, after: Ship) -> dict[str, Any]:
+    before, value = (float(s.derivative(name)) for s in (ship, after))
+    return {"name": name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}
