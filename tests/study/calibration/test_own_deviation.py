@@ -10,6 +10,7 @@ from bench.small_boats import sailed, ship_of
 from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.calibration.own_deviation import own_deviation
+from twin.study.calibration.ways import COMPASS, best_way
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import NoiseModel
@@ -54,3 +55,18 @@ def test_only_a_deviation_is_asked_for(changed, asked):
     tracks = [track(changed(sailed(BOAT, seed, SECONDS, 3)), ship) for seed in (1, 2)]
     found = fit(tracks, model, core_unknowns(model), known, NoiseModel(), temper=TEMPER, smooth=True)
     assert tuple(u.name for u in own_deviation(tracks, found, known, TEMPER)) == asked
+
+
+def test_a_curve_that_no_prediction_asks_for_leaves_nothing_in_the_ship_file():
+    curve = COMPASS(B=0.4)
+    noted = {
+        "effects": {COMPASS.__name__: {"B": {"value": 0.4}}},
+        "structural": {"beside_effects": [COMPASS.__name__]},
+    }
+    ship = replace(ship_of(BOAT).with_effects(curve), notes=noted)
+    held_out = [(track(sailed(BOAT, 3, 60.0, 3), ship), 0)]
+    best = best_way(ship, [], [], held_out, by="steps", found_curve=True, progress=lambda text: None)
+    assert best.way == "steps" and not best.ship.effects
+    assert best.ship.notes == {"effects": {}, "structural": {"beside_effects": []}}
+    kept = best_way(ship, [], [], held_out, by="steps", found_curve=False, progress=lambda text: None)
+    assert kept.ship is ship

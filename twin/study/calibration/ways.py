@@ -1,6 +1,7 @@
 """The ways in which a ship is fitted to its voyages, and which of them predicts what was not used best."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from twin.physics.effects import of_role, of_ship
@@ -48,7 +49,7 @@ def best_way(
 ) -> FittedShip:
     """The best of the ships to choose from: fitted by steps, or from there along the path; and, where the
     compass's deviation was found beside the core, without it, for the next voyage may not have it."""
-    begun = [steps, *([steps.without_effects(COMPASS.__name__)] if found_curve else [])]
+    begun = [steps, *([_without_curve(steps)] if found_curve else [])]
     ships = [("steps", s) for s in begun] if by != "paths" or not excited else []
     if by != "steps" and excited:
         progress("fitting along the path")
@@ -58,3 +59,12 @@ def best_way(
         ]
     every = [FittedShip(way, s, errors(Model.of(s), held_out)) for way, s in ships]
     return min(every, key=lambda one: one.measure)
+
+
+def _without_curve(ship: Ship) -> Ship:
+    """The ship whose file neither has the curve nor says that it was found."""
+    name, structural = COMPASS.__name__, ship.notes["structural"]
+    effects = {k: v for k, v in ship.notes.get("effects", {}).items() if k != name}
+    beside = [k for k in structural["beside_effects"] if k != name]
+    notes = {**ship.notes, "effects": effects, "structural": structural | {"beside_effects": beside}}
+    return replace(ship.without_effects(name), notes=notes)
