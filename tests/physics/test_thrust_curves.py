@@ -1,5 +1,7 @@
 """The curve of one actuator's thrust: at rest, at speed, astern, against the water and overrun by it."""
 
+import math
+
 import pytest
 
 from tests.physics.test_actuators import PORT, ship_with
@@ -103,3 +105,25 @@ def test_a_stalling_thruster_has_a_finite_slope_everywhere():
                 x = torch.tensor([push, u], dtype=torch.float64, requires_grad=True)
                 a.force({f"port.{a.attributes[0]}": x[0]}, x[1], 0.0, 0.0, ship)[0].backward()
                 assert bool(torch.isfinite(x.grad).all()), (table["channels"], push, u)
+
+
+def test_the_leg_of_an_azimuth_or_an_outboard_is_a_fin_that_turns_with_it_by_hand():
+    turned = {"channels": ["thrust_n", "angle_deg"], "x_m": -0.4, "y_m": 0.0, "diameter_m": 0.2, "strut": 1.5}
+    for kind, aside in (("azimuth", 1.0), ("outboard", -1.0)):
+        ship = ship_with(PORT | turned | {"kind": kind})
+        a = ship.actuator("port")
+        X, Y, N = a.force({"port.thrust": 0.0, "port.angle": 0.5}, 2.0, 0.0, 0.0, ship)
+        # water at 2 m/s from ahead: 2 sin(0.5) across, and the force on 1.5 0.2^2 m2 across the leg
+        F = 0.5 * ship.rho * 1.5 * 0.04 * 2.0 * math.sin(0.5) * 2.0
+        assert pytest.approx(-F * math.sin(0.5), rel=1e-6) == X
+        assert aside * Y == pytest.approx(F * math.cos(0.5), rel=1e-6)
+        assert pytest.approx(-0.4 * Y) == N
+        assert "strut" in a.estimated()
+    # of a command T_ahead/(rho U_0^2) stands for D^2; what has no leg has no fin
+    plain = {k: v for k, v in turned.items() if k != "diameter_m"} | {"channels": ["command", "angle_deg"]}
+    ship = ship_with(PORT | plain | {"kind": "azimuth"})
+    a = ship.actuator("port")
+    _, Y, _ = a.force({"port.command": 0.0, "port.angle": 0.0}, 0.0, 1.0, 0.0, ship)
+    assert pytest.approx(-0.5 * 1.5 * 50.0 / ship.U_0**2, rel=1e-4) == Y
+    jet = ship_with(PORT | plain | {"kind": "waterjet"}).actuator("port")
+    assert "strut" not in jet.estimated() and "strut" not in ship_with(PORT).actuator("port").estimated()

@@ -201,6 +201,7 @@ CALIBRATE = (
     ),
     JsonKey("antenna.*", "", "where position is measured, if clearly elsewhere", "found"),
     JsonKey("wind.*", "", "numbers of `Wind`, if it clearly pushed the ship", "found"),
+    JsonKey("compass.*", "", "deviation of the compass, if predictions are better with it", "found"),
     JsonKey("instruments.*", "", "what its instruments show on every voyage, by effect and number", "found"),
     JsonKey("waves[]", "", "voyages on which waves move the ship", "there are some"),
     JsonKey("waves[].*", "", "such a voyage, with the waves' period", "there are some"),

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.api.comparison import compare
 from twin.study.prediction.tell import terminal_lines
 from twin.study.track.jumps import jumps_in_words, jumps_on
 from twin.study.track.track import track
-from twin.api.comparison import compare
 
 AT_S, LASTED_S, JUMP_M = 400.0, 20.0, 60.0
 

@@ -24,6 +24,11 @@ J_0 the water overruns the blades, and a screw that stands still or is dragged a
 motion: less drag rho D^2 (|u_a| - J_0 |n| D)^2, of a command less drag T_ahead (|u_a|/U_0 - sqrt(g)/slow)^2
 [Carlton 2018, ch. 6, propellers in four quadrants: C_T at beta = 90 deg]. reverse = 1, stall = 0, sag = 0
 and drag = 0 change nothing.
+
+What carries the propeller of an azimuth or an outboard turns with it and is a short fin: water that runs at
+(along, across) its axis pushes across it with -1/2 rho strut D^2 across |.| (of a command T_ahead/(rho U_0^2)
+for D^2). On a ship with way on that is a rudder's force, and may be more than the thrust's own part across
+the ship [Carlton 2018, ch. 15: azimuthing units in oblique flow]. strut = 0 changes nothing.
 """
 
 from collections.abc import Mapping
@@ -45,7 +50,8 @@ class Actuator:
     """Forces come from `force`; `channels` are what is recorded of it, such as ("rate_rpm", "angle_deg").
 
     The metadata of each number: unit, range, meaning, `sd` of its prior where reference voyages may tell it,
-    `key` in the ship file, and `of`: the attributes one of which must be recorded for it to matter."""
+    `key` in the ship file, `of`: the attributes one of which must be recorded for it to matter, and `legs`:
+    whether only kinds with a leg have it."""
 
     name: str
     kind: str
@@ -78,6 +84,9 @@ class Actuator:
     drag: Number = number(
         0.0, "-", 0.0, 2.0, "drag where the water overruns the blades", sd=0.2, of="command pwm rate"
     )
+    strut: Number = number(
+        0.0, "-", 0.0, 5.0, "leg's area times its normal force's slope, over D^2", sd=0.7, legs=True
+    )
     D: Number = number(None, "m", 0.005, 15.0, "propeller diameter", key="diameter_m")
     K_T0: Number = number(0.32, "-", 0.02, 1.5, "thrust coefficient at J = 0")
     K_T1: Number = number(-0.32, "-", -1.5, 0.0, "slope of the thrust coefficient over J", sd=0.1, of="rate")
@@ -105,11 +114,19 @@ class Actuator:
     def estimated(self) -> tuple[str, ...]:
         """Its numbers that voyages can tell."""
         has = self.attributes
+        legs = KINDS[self.kind].legs and not (self.D is None and self.ahead is None)
         return tuple(
             f.name
             for f in NUMBERS.values()
-            if f.metadata["sd"] and (not f.metadata.get("of") or set(f.metadata["of"].split()) & set(has))
+            if f.metadata["sd"]
+            and (not f.metadata.get("of") or set(f.metadata["of"].split()) & set(has))
+            and (legs or not f.metadata.get("legs"))
         )
+
+    @property
+    def make(self) -> tuple[object, ...]:
+        """What actuators of one make have in common, wherever they stand and however they have aged."""
+        return self.kind, self.channels, *(getattr(self, n) for n in BY_MAKE)
 
     def coefficients(self, ship: ShipLike) -> Coefficients:
         """The coefficients of the ship's propeller and rudder, with this one's numbers."""
@@ -143,3 +160,5 @@ class Actuator:
 
 
 NUMBERS = {f.name: f for f in fields(Actuator) if f.metadata}
+BY_MAKE = ("ahead", "astern", "dead", "D", "K_T0", "pitch_0", "A_R", "U_half")  # as builders tell them
+OWN = ("gain", "zero", "trim")  # found for each; what else voyages tell of it is its make's

@@ -73,6 +73,10 @@ class OneActuator(Protocol):
         """Drag where the water overruns the blades [-]."""
 
     @property
+    def strut(self) -> Number:
+        """Area of the leg that turns with it times the slope of its normal force, over D^2 [-]."""
+
+    @property
     def D(self) -> Number:
         """Propeller diameter [m]."""
 
@@ -101,12 +105,14 @@ class OneActuator(Protocol):
 
 
 class Kind(NamedTuple):
-    """`needs`: attributes that must be recorded beside one that says how hard it pushes."""
+    """`needs`: attributes that must be recorded beside one that says how hard it pushes; `legs`: whether what
+    carries it turns with it."""
 
     force: Callable[[OneActuator, Orders, Number, Number, Number, ShipLike], core.Tau]
     needs: tuple[str, ...]
     may: tuple[str, ...]
     doc: str
+    legs: bool = False
 
 
 def push(a: OneActuator, orders: Orders, u_a: Number, ship: ShipLike) -> Number:
@@ -184,8 +190,10 @@ def azimuth(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, shi
     """Its angle is where the thrust pushes the ship to: 0 ahead, positive to starboard."""
     angle = orders[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
-    T = push(a, orders, (u - a.y * r) * c + (v + a.x * r) * s, ship)
-    return _at(a, T * c, T * s)
+    ahead, aside = u - a.y * r, v + a.x * r
+    along = ahead * c + aside * s
+    T, F = push(a, orders, along, ship), _leg(a, along, aside * c - ahead * s, ship)
+    return _at(a, T * c - F * s, T * s + F * c)
 
 
 def steered(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
@@ -194,6 +202,24 @@ def steered(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, shi
     c, s = cos(angle), sin(angle)
     T = push(a, orders, u - a.y * r, ship)
     return _at(a, T * c, -T * s)
+
+
+def outboard(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+    """As a waterjet's, and its leg turns with it as a rudder does."""
+    angle = orders[a.keys["angle"]] + a.trim
+    c, s = cos(angle), sin(angle)
+    ahead, aside = u - a.y * r, v + a.x * r
+    T, F = push(a, orders, ahead, ship), _leg(a, ahead * c - aside * s, ahead * s + aside * c, ship)
+    return _at(a, T * c + F * s, F * c - T * s)
+
+
+def _leg(a: OneActuator, along: Number, across: Number, ship: ShipLike) -> Number:
+    """Force [N] across its own axis on the leg that carries it, a short fin in water that runs at (along,
+    across) [m/s]: -1/2 rho strut D^2 across |.|, and T_ahead/(rho U_0^2) for D^2 where no diameter is
+    known."""
+    of_thrust = 0.0 if a.ahead is None else a.ahead / (ship.rho * ship.U_0**2)
+    area = a.strut * (of_thrust if a.D is None else a.D * a.D)
+    return -0.5 * ship.rho * area * across * sqrt(along * along + across * across + NARROW)
 
 
 def tunnel(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
@@ -217,8 +243,8 @@ KINDS: dict[str, Kind] = {
     "propeller": Kind(propeller, (), ("angle",), "on a shaft, with or without a rudder in its slipstream"),
     "controllable_pitch": Kind(propeller, ("pitch",), ("angle",), "a shaft whose blades turn"),
     "fixed_thruster": Kind(fixed, (), (), "pushes along the ship"),
-    "azimuth": Kind(azimuth, ("angle",), (), "turns all round; its angle is where it pushes the ship to"),
+    "azimuth": Kind(azimuth, ("angle",), (), "turns all round; its angle: where it pushes the ship to", True),
     "waterjet": Kind(steered, ("angle",), (), "its angle is counted like a rudder's"),
-    "outboard": Kind(steered, ("angle",), (), "its angle is counted like a rudder's"),
+    "outboard": Kind(outboard, ("angle",), (), "its angle is counted like a rudder's", True),
     "tunnel_thruster": Kind(tunnel, (), (), "pushes to starboard when told to go ahead"),
 }

@@ -28,6 +28,8 @@ class CompassDeviation(SensorFault):
 
     attitude = True
     kinematic = True
+    role = "compass"
+    with_core = "so the ship's way through the water told on the reference voyages"
     by_readings = MappingProxyType({name: name for name in "BCDE"})
     source = (
         "Admiralty Manual for the Deviation of the Compass (Evans & Smith); ISO 1069 (coefficients A "

@@ -55,6 +55,11 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
             "  wind pushed the ship on these voyages: its force is now part of the model "
             f"({PARTS['wind'].__name__}: {_sizes(wind)})"
         )
+    if compass := result["compass"]:
+        lines.append(
+            "  speed over ground is turned by a compass that deviates with the heading: that is now part of "
+            f"the model ({PARTS['compass'].__name__}: {_sizes(compass)})"
+        )
     lines += [
         f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "
         "is allowed for and not called missing"

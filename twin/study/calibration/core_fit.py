@@ -11,12 +11,13 @@ from twin.physics.effects import of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.calibration.held_out import HeldOut, errors, size
+from twin.study.calibration.held_out import HeldOut, errors
+from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.own_instruments import own_instruments
 from twin.study.calibration.parts import placed, significant, with_or_without_wind
-from twin.study.calibration.rollout import rolled_out
 from twin.study.calibration.usual import significantly_there, usual
-from twin.study.estimation.columns import core_unknowns
+from twin.study.calibration.ways import best_way
+from twin.study.estimation.columns import Unknown, core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.start import waves_on
@@ -25,7 +26,6 @@ from twin.study.reference.derivatives import (
     first_prior,
     informed_by,
     noted,
-    with_core_of,
     with_derivatives,
 )
 from twin.study.reference.nuisance import TEMPER, instruments, temper_of
@@ -38,11 +38,8 @@ from twin.study.track.jumps import jumps_on
 from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1
-# one step ahead through a filter, or several lengths ahead without (rollout.py)
-FITTED_BY = ("steps", "paths")
-BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
 # of the ship and not of the core, found with it; their numbers stand under these keys in --json
-PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind")}
+PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind", "compass")}
 
 
 def searched_parts(ship: Ship) -> tuple[type[Effect], ...]:
@@ -74,8 +71,10 @@ class Core:
     derivatives: list[Derivative]
     # of the ship file; gears and wind among them if the voyages asked for these
     effects: tuple[Effect, ...]
-    # of the gears, the antenna and the wind, with their standard errors
+    # of the parts that were searched and of the antenna, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
+    searched: tuple[type[Effect], ...]
+    curve: tuple[Unknown, ...]  # of the compass's deviation, where the voyages clearly ask for one beside it
     antenna: Effect | None  # where it was found, if not where the ship file has it
     noise_model: NoiseModel
     temper: float
@@ -95,36 +94,43 @@ def calibrate(
     own = own_instruments(fitted, ship, progress)
     ship = own.ship
     core = _core(sailed, ship, progress)
+    begun, curve = ship, core.curve
+    if curve:
+        progress("fitting again, with a compass that deviates with the heading")
+        begun = ship.with_effects(PARTS["compass"].absent(ship))
+        core = _core(sailed, begun, progress, curve)
     if core.antenna is not None:
         progress("fitting again, with the antenna where it was found")
-        core = _with_antenna(core.antenna, sailed, ship, progress)
-    tracks = core.tracks
+        core = _with_antenna(core.antenna, sailed, begun, progress, curve)
     held_out = [(swung(t, core.model), first) for t, first in held_out]
-    ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
-    if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
-        progress("fitting along the path")
-        open_loop_check = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
-        ships["paths"] = with_core_of(ships["steps"], open_loop_check)
-    off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
-    way = (
-        by
-        if by in ships
-        else min(ships, key=lambda way: size(off[way].by_horizon) - BETTER * (way == "steps"))
+    steps = _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
+    chosen = best_way(
+        steps,
+        core.tracks,
+        [d.unknown for d in core.derivatives if d.excited],
+        held_out,
+        by=by,
+        found_curve=bool(curve),
+        progress=progress,
     )
     progress("estimating the baseline of this ship")
-    lasting_ones = usual(ships[way], tracks, core.noise_model)
-    judged = {"held_out": off[way].by_horizon, "by_regime": off[way].by_regime}
-    after = noted(ships[way], "structural", lasting_ones | judged)
-    result = _result(ship, after, core, way, errors(Model.of(first), held_out).by_horizon)
+    lasting_ones = usual(chosen.ship, core.tracks, core.noise_model)
+    judged = {"held_out": chosen.off.by_horizon, "by_regime": chosen.off.by_regime}
+    after = noted(chosen.ship, "structural", lasting_ones | judged)
+    result = _result(ship, after, core, chosen.way, errors(Model.of(first), held_out).by_horizon)
     return Calibrated(after, plain(result | {"instruments": own.written}))
 
 
 def _with_antenna(
-    first: Effect, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
+    first: Effect,
+    sailed: Sequence[Track],
+    ship: Ship,
+    progress: Callable[[str], None],
+    curve: Sequence[Unknown],
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
     of its own, and had bent the core."""
-    found = _core(sailed, ship.with_effects(first), progress)
+    found = _core(sailed, ship.with_effects(first), progress, curve)
     of_antenna = type(first)
     antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
     # until predictions are better with the other (`placed`)
@@ -136,9 +142,17 @@ def _with_antenna(
     )
 
 
-def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
+def _core(
+    sailed: Sequence[Track],
+    ship: Ship,
+    progress: Callable[[str], None],
+    curve: Sequence[Unknown] = (),
+) -> Core:
+    """`curve`: numbers of the compass's deviation, which the ship then has, that are as open as in any
+    ship's."""
     model, known = Model.of(ship), of_ship(ship)
-    unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
+    own = [u for u in instruments(model, known) if not curve or u.owner != PARTS["compass"].__name__]
+    unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *own, *curve))
     progress(
         "fitting the core, and testing whether "
         + (
@@ -156,14 +170,17 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
         rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
     progress("testing whether wind pushed the ship")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
+    progress("testing whether the compass deviates with the heading")
+    asked_for = own_deviation(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("estimating the noise model")
     noise_model, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again with this noise model")
     found = fit(tracks, rough.model, unknowns, known, noise_model, temper=temper, smooth=True)
-    asked = tuple(e for e in found.model.effects if type(e) in searched_parts(ship))
+    searched = (*searched_parts(ship), *([PARTS["compass"]] if curve else []))
+    asked = tuple(e for e in found.model.effects if type(e) in searched)
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
-    parts = {e.__name__: e for e in (*searched_parts(ship), *PARTS.values())}
+    parts = {e.__name__: e for e in (*searched, *PARTS.values())}
     numbers = {name: _numbers(found, name, e.with_core) for name, e in parts.items()}
     return Core(
         tracks,
@@ -171,6 +188,8 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
         informed_by(found),
         (*kept, *asked),
         numbers,
+        searched,
+        asked_for,
         significant(found),
         noise_model,
         temper,
@@ -188,7 +207,7 @@ def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
 
 
 def _beside(ship: Ship, core: Core) -> Ship:
-    """The ship with the fitted derivatives, and the gears and the wind if they were found."""
+    """The ship with the fitted derivatives, and with what was searched beside them and found."""
     return replace(with_derivatives(ship, core.derivatives), effects=core.effects)
 
 
@@ -218,7 +237,8 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of it is in the ship file as this calibration found it."""
-    return name in (e.__name__ for e in searched_parts(ship)) or (
+    there = [e for e in ship.effects if type(e) in core.searched]
+    return name in (type(e).__name__ for e in there) or (
         core.antenna is not None and core.antenna in ship.effects
     )
 
@@ -230,8 +250,8 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
-        "derivatives": [_row(d, ship, after) for d in core.derivatives],
-        "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
+        "derivatives": [_row(d, n, ship, after) for d in core.derivatives for n in d.unknown.names],
+        "unexcited": [n for d in core.derivatives if not d.excited for n in d.unknown.names],
         "fitted_by": by,
         **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
         "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
@@ -256,6 +276,6 @@ def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
     return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
 
 
-def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
-    before, value = (float(s.derivative(d.unknown.name)) for s in (ship, after))
-    return {"name": d.unknown.name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}
+def _row(d: Derivative, name: str, ship: Ship, after: Ship) -> dict[str, Any]:
+    before, value = (float(s.derivative(name)) for s in (ship, after))
+    return {"name": name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}

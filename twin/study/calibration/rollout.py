@@ -60,11 +60,11 @@ class _PathProblem:
         """(Q, W, K, 4) the same at each of these places Z (Q, P), all in one pass."""
         ahead = max(HORIZON * float(self.model.ship.scale("time")), SHORTEST_S)
         numbers = np.clip(self.centre + self.sd * Z, self.lo, self.hi).T
-        names = [u.name for u in self.unknowns]
         ship = self.model.ship.with_derivatives(
             **{
                 name: float(x[0]) if np.all(x == x[0]) else x[:, None]
-                for name, x in zip(names, numbers, strict=True)
+                for u, x in zip(self.unknowns, numbers, strict=True)
+                for name in u.names
             }
         )
         model, parts = Model(ship, self.model.effects), []

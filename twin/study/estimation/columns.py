@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.physics.actuators import NUMBERS
+from twin.physics.actuators import NUMBERS, OWN
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
@@ -32,12 +32,18 @@ class Unknown:
     lo: float
     hi: float
     every_day: bool = False  # whether each day brings a little of it
-    also: tuple[str, ...] = ()  # other effects whose number of this name it is, too
+    # other effects whose number of this name it is, too; of the core: whole names of numbers that it also is
+    also: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
         """Owner and name, as in core.N_r."""
         return f"{self.owner}.{self.name}"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of a number of the core: all the ship's numbers that it is."""
+        return self.name, *self.also
 
 
 FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the data cannot tell them apart
@@ -81,11 +87,11 @@ def core_unknowns(model: Model) -> list[Unknown]:
     """The core's derivatives, with the ship file's own standard errors where it has them."""
     own = model.ship.notes.get("derivatives", {})
     out = []
-    for name, value, m in _learnable(model.ship):
+    for name, value, m, also in _learnable(model.ship):
         entry = own.get(name, {})
         sd = entry.get("prior_sd", None) if isinstance(entry, dict) else None
         sd = float(sd) if sd else max(m["sd"], 0.15 * abs(value) if "." not in name else 0.0)
-        out.append(Unknown("core", name, m["unit"], value, sd, m["lo"], m["hi"]))
+        out.append(Unknown("core", name, m["unit"], value, sd, m["lo"], m["hi"], also=also))
     return out
 
 
@@ -94,16 +100,28 @@ OF_SCREW = ("K_T0", "K_T1")
 OF_RUDDER = ("kappa", "C_L", "t_R", "a_H", "x_H", "gamma_v", "gamma_r", "gamma_a")
 
 
-def _learnable(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
-    """(name, value, declaration) of every number of the core that voyages may tell."""
+def _learnable(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any], tuple[str, ...]]]:
+    """(name, value, declaration, what else is the same number) of every number of the core that voyages may
+    tell."""
     rudders = any(a.A_R is not None for a in ship.actuators)
     off = (*OF_SCREW, *(() if rudders else OF_RUDDER)) if ship.actuators else ()
     for f in DERIVATIVES:
         if f.name not in FIXED and f.metadata["sd"] and f.name not in off:
-            yield f.name, float(getattr(ship.derivatives, f.name)), f.metadata
+            yield f.name, float(getattr(ship.derivatives, f.name)), f.metadata, ()
+    for (name, value, *_), owners in _of_actuators(ship).items():
+        one, *others = (f"{owner}.{name}" for owner in owners)
+        yield one, value, NUMBERS[name].metadata, tuple(others)
+
+
+def _of_actuators(ship: Ship) -> dict[tuple[str, float, object], list[str]]:
+    """(name, value, whose) of every number of the actuators that voyages may tell, and the actuators that
+    share it: the shape of a make's curve is one, as long as the ship file has it alike for all of them."""
+    out: dict[tuple[str, float, object], list[str]] = {}
     for a in ship.actuators:
         for name in a.estimated():
-            yield f"{a.name}.{name}", float(getattr(a, name)), NUMBERS[name].metadata
+            whose = a.name if name in OWN else a.make
+            out.setdefault((name, float(getattr(a, name)), whose), []).append(a.name)
+    return out
 
 
 def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
@@ -237,7 +255,7 @@ def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, t
     if unknown.owner in NO_MODEL:
         return model
     if unknown.owner == "core":
-        return Model(model.ship.with_derivatives(**{unknown.name: value}), model.effects)
+        return Model(model.ship.with_derivatives(**dict.fromkeys(unknown.names, value)), model.effects)
     of = {type(e).__name__: e for e in model.effects}
     owners = (unknown.owner, *unknown.also)
     effects = (of.get(name) or catalogue[name].absent(model.ship) for name in owners)

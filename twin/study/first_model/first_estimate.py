@@ -53,6 +53,8 @@ LEAST_FULL = 0.05  # of length x beam x draught, of two slender hulls with much 
 # drag of a screw that stands still, over rho D^2 u^2: a plate of half its disc; a jet has no blades in the
 # stream, and none runs along a tunnel
 OVERRUN_DRAG = 0.2  # of rho D^2 u^2 [-]
+# what carries an azimuth's propeller: a fin half a diameter long and a whole one deep, of aspect ratio 2
+LEG = 0.5 * 6.13 * 2.0 / (2.0 + 2.25)  # area times slope of the normal force, over D^2 [-]
 BLADES = ("propeller", "controllable_pitch", "fixed_thruster", "azimuth", "outboard")
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
@@ -72,16 +74,27 @@ def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -
         "derivatives": {k: {"value": v, "source": s} for k, (v, s) in d.items()},
     }
     used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
-    screws = [a.name for a in actuators if a.kind in BLADES and not a.drag and "drag" in a.estimated()]
-    actuators = tuple(a.but(drag=OVERRUN_DRAG) if a.name in screws else a for a in actuators)
-    notes["derivatives"] |= {f"{name}.drag": {"value": OVERRUN_DRAG, "source": "CAR18"} for name in screws}
-    used |= {"CAR18"} if screws else set()
+    actuators, begun = _begun(actuators)
+    notes["derivatives"] |= begun
+    used |= {entry["source"] for entry in begun.values()}
     notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
     ship = replace(_ship(name.strip(), p, d), notes=notes, actuators=actuators)
     _in_ranges(ship)
     rough = [k for k, (_, s) in p.items() if s in ("ROUGH", "ALEX")]
     guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
     return ship, reg.outside(h) + guessed + _two_fullnesses(given, ship)
+
+
+def _begun(actuators: tuple[Actuator, ...]) -> tuple[tuple[Actuator, ...], dict[str, dict[str, Any]]]:
+    """The actuators with what builders never tell and every one of their kind has, and where it is from."""
+    out, notes = list[Actuator](), dict[str, dict[str, Any]]()
+    for a in actuators:
+        may = {"drag": (OVERRUN_DRAG, "CAR18")} if a.kind in BLADES else {}
+        may["strut"] = (LEG, "FUJ61")
+        mine = {n: x for n, x in may.items() if n in a.estimated() and not getattr(a, n)}
+        notes |= {f"{a.name}.{n}": {"value": value, "source": source} for n, (value, source) in mine.items()}
+        out.append(a.but(**{n: value for n, (value, _) in mine.items()}))
+    return tuple(out), notes
 
 
 def _two_fullnesses(given: Given, ship: Ship) -> list[str]:

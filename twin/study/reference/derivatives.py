@@ -43,7 +43,7 @@ def informed_by(found: Fit) -> list[Derivative]:
     free = [d for d in told if d.excited]
     if not free:
         return told
-    kept = found.model.ship.with_derivatives(**{d.unknown.name: d.unknown.centre for d in told})
+    kept = found.model.ship.with_derivatives(**{n: d.unknown.centre for d in told for n in d.unknown.names})
     centre, prior, sd = np.array([(d.unknown.centre, d.unknown.sd, d.sd) for d in free]).T
     z = (np.array([d.fitted for d in free]) - centre) / prior
     box = (np.array([[d.unknown.lo, d.unknown.hi] for d in free]).T - centre) / prior
@@ -67,7 +67,7 @@ def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
         "prior kept: the reference voyages do not excite it",
     )
     entries = {
-        d.unknown.name: {
+        name: {
             "value": d.value,
             "unit": d.unknown.unit,
             "sd": d.sd,
@@ -76,8 +76,9 @@ def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
             "source": source[not d.excited],
         }
         for d in found
+        for name in d.unknown.names
     }
-    after = ship.with_derivatives(**{d.unknown.name: d.value for d in found})
+    after = ship.with_derivatives(**{name: d.value for d in found for name in d.unknown.names})
     return noted(after, "derivatives", entries)
 
 

@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.physics.actuators import Actuator
 from twin.physics.effect import Effect, Lag
 from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
@@ -38,13 +37,8 @@ def gears_of(ship: ShipLike) -> tuple[Gears, ...]:
     alike: dict[object, list[type[Effect]]] = {}
     for effect in of_ship(ship).values():
         if issubclass(effect, OfActuator) and issubclass(effect, Lag):
-            alike.setdefault(_make(ship.actuator(effect.actuator)), []).append(effect)
+            alike.setdefault(ship.actuator(effect.actuator).make, []).append(effect)
     return tuple(map(tuple, alike.values()))
-
-
-def _make(a: Actuator) -> tuple[object, ...]:
-    """What like actuators have in common, wherever they stand and however they have aged."""
-    return a.kind, a.channels, a.ahead, a.astern, a.D, a.A_R, a.U_half
 
 
 def gear_unknowns(model: Model) -> tuple[Unknown, ...]:
