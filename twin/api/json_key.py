@@ -36,6 +36,15 @@ CHECKS = (
     JsonKey("data_checks[].text", "", "the answer in a sentence"),
     JsonKey("data_checks[].voyage", "", "which voyage", "more than one voyage was given"),
 )
+SEEN = (  # on the voyages
+    JsonKey("waves[]", "", "voyages on which waves move the ship", "there are some"),
+    JsonKey("waves[].*", "", "such a voyage, with the waves' period", "there are some"),
+    JsonKey("jumps[]", "", "stretches whose readings do not count", "there are some"),
+    JsonKey("jumps[].voyage", "", "of this voyage", "there are some"),
+    JsonKey("jumps[].start_s", "s", "where it begins", "there are some"),
+    JsonKey("jumps[].end_s", "s", "where it ends", "there are some"),
+    JsonKey("jumps[].readings[]", "", "place or heading", "there are some"),
+)
 COMMAND = (
     JsonKey("command", "", "the command that made it", CLI),
     JsonKey("files.ship", "", "the ship file that was given", CLI),
