@@ -36,7 +36,7 @@ CHECKS = (
     JsonKey("data_checks[].text", "", "the answer in a sentence"),
     JsonKey("data_checks[].voyage", "", "which voyage", "more than one voyage was given"),
 )
-SEEN = (  # on the voyages
+WAVES_AND_JUMPS = (  # on the voyages
     JsonKey("waves[]", "", "voyages on which waves move the ship", "there are some"),
     JsonKey("waves[].*", "", "such a voyage, with the waves' period", "there are some"),
     JsonKey("jumps[]", "", "stretches whose readings do not count", "there are some"),

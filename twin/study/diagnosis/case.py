@@ -189,7 +189,7 @@ def settle(case: Case) -> Case:
     if any(x.track.ripple is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
         lines, told = uneven, shaky
     levels, sensor = grid[int(np.argmax(told))]
-    for axis in range(3):  # what tosses the ship in one of them need not do so in the others
+    for axis in range(3):  # what pushes the ship in one of them need not do so in the others
         lower = [_with(levels, axis, x) for x in steps if x < levels[axis] > white[axis]]
         if lower:
             tried = [(t, sensor) for t in (levels, *lower)]

@@ -137,7 +137,7 @@ def _second_moment(
     return np.asarray(S)
 
 
-class Learned(NamedTuple):
+class HorizonErrors(NamedTuple):
     """Of one horizon."""
 
     covariance: np.ndarray  # (8, 8)
@@ -146,7 +146,7 @@ class Learned(NamedTuple):
     windows: float  # that are independent
 
 
-def _learned(windows: Sequence[Windows], horizon_s: float) -> Learned:
+def _learned(windows: Sequence[Windows], horizon_s: float) -> HorizonErrors:
     ends = [_ends(w, horizon_s) for w in windows]
     count = [_independent(w, horizon_s) for w in windows]
     every = np.concatenate(ends)
@@ -155,7 +155,7 @@ def _learned(windows: Sequence[Windows], horizon_s: float) -> Learned:
     rho = _alike(scaled, [max(1, round(len(e) / max(n, 1.0))) for e, n in zip(ends, count, strict=True)])
     effective = sum(n / (1.0 + max(n - 1.0, 0.0) * rho) for n in count)
     size = np.array([np.sqrt(np.nanmean(np.square(z))) if z.size else np.nan for z in scaled])
-    return Learned(_second_moment(windows, horizon_s, effective), rho, size, effective)
+    return HorizonErrors(_second_moment(windows, horizon_s, effective), rho, size, effective)
 
 
 def _independent(windows: Windows, horizon_s: float) -> float:

@@ -120,22 +120,22 @@ def _ascended(
     start = replace(
         start, wander=start.wander or WANDER, heading_wander=start.heading_wander or HEADING_WANDER
     )
-    best, noise_model = _climbed(scores, start, least)
-    if receiver and _tossed(noise_model) and any(np.isfinite(x.e[:, GROUND]).any() for x in lines):
-        erring, noise = _climbed(scores, _of_the_receiver(noise_model), least)
+    best, noise_model = _searched(scores, start, least)
+    if receiver and _restless(noise_model) and any(np.isfinite(x.e[:, GROUND]).any() for x in lines):
+        erring, noise = _searched(scores, _of_the_receiver(noise_model), least)
         noise_model = noise if erring > best + WORTH else noise_model
     # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
     few = 1.0 + 4.0 / max(len(lines), 1)
     return noise_model.scaled(few**0.5)
 
 
-def _tossed(noise_model: NoiseModel) -> bool:
-    """Whether much more seems to toss the ship in surge or sway than where the search begins."""
+def _restless(noise_model: NoiseModel) -> bool:
+    """Whether much more seems to push the ship in surge or sway than where the search begins."""
     return max(noise_model.white[:2]) > RECEIVERS * NoiseModel().white[0]
 
 
 def _of_the_receiver(noise_model: NoiseModel) -> NoiseModel:
-    """Where the climb begins if the receiver errs, and not the ship is pushed."""
+    """Where the search begins if the receiver errs, and not the ship is pushed."""
     surge, sway, yaw = noise_model.white
     low = BOUNDS["white"][0]
     return replace(
@@ -146,7 +146,7 @@ def _of_the_receiver(noise_model: NoiseModel) -> NoiseModel:
     )
 
 
-def _climbed(
+def _searched(
     scores: Callable[[Sequence[NoiseModel]], list[float]], noise_model: NoiseModel, least: float
 ) -> tuple[float, NoiseModel]:
     """The most probable noise model that is reached by coordinate ascent, and its score."""
