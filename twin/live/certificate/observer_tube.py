@@ -23,6 +23,7 @@ NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measureme
 Three = tuple[float, float, float]
 Rows = tuple[tuple[float, ...], ...]
 NO_PULL = (0.0, 0.0, 0.0)
+UNKNOWN: tuple[Three, float] = ((NOTHING, NOTHING, NOTHING), NOTHING)
 NONE = (False, False, False)
 
 
@@ -53,6 +54,11 @@ class Highest:
             kept.popleft()
         return kept[0][1]
 
+    @property
+    def greatest(self) -> float:
+        """The greatest of the window."""
+        return self.kept[0][1]
+
     def raised(self, x: float) -> float:
         """The newest value is at least this, after all."""
         self.count -= 1
@@ -76,9 +82,24 @@ class Tube:
         self._widest: Three = first  # greatest after of the window
         self._seas, self._acted = Highest(self.window), Highest(self.window)
         self._pulls: deque[Three] = deque(maxlen=self.window)
+        # what is known without counting measurements in, E of it, and its greatest of the window
+        self._known: tuple[Three, float] = (first, self.psi)
+        self._alone: tuple[Three, float] = self._known
+        self._alones = tuple([Highest(self.window, b) for b in first])
         # the highest in the window, and whether the learned force acted, for which the rows were made
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
+
+    def carried(self, pulled: Three, turned: float, since_s: float) -> tuple[Three, float]:
+        """What was `know`n (nu, psi) one step later, with no measurement counted: E of it, and what samples
+        `pulled` and `turned` the estimate by. Nothing in it looks back, but on bounds from before `since_s`
+        it does not rely."""
+        return add(self._alone[0], pulled), self._alone[1] + turned
+
+    def know(self, most: Three, psi: float) -> None:
+        """A bound of the estimate's error that holds now, whatever this tube says: the next step carries it,
+        and only that one."""
+        self._known = most, psi
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open. What a late measurement looks back on stays in the
@@ -89,8 +110,10 @@ class Tube:
         u, v, r = self.beta
         self._widest = first.raised(u), second.raised(v), third.raised(r)
         self._headings.raised(self.psi)
-        for before, b in zip(self._before, self.beta, strict=True):
+        for before, alone, b in zip(self._before, self._alones, self.beta, strict=True):
             before.raised(b)
+            alone.raised(b)
+        self._known = self.beta, self.psi
 
     def step(
         self,
@@ -118,10 +141,13 @@ class Tube:
         else:
             late = late or TABLE[-1]
             short, table, received, heading = 0.0, self._late_rows(late), NONE, False
-        beta, E = [], 0.0
+        beta, alone, E = [], [], 0.0
+        (known_u, known_v, known_r), known_psi = self._known
         for i, (v0, v1, v2, d, t, w0, w1, w2, again, d0, d1, d2, c) in enumerate(table):
             E = min(v0 * u + v1 * v + v2 * r + d + t * psi, NOTHING)
             widest = self._before[i].push(E)
+            alone.append(min(v0 * known_u + v1 * known_v + v2 * known_r + d + t * known_psi, NOTHING))
+            self._alones[i].push(alone[i])
             if received[i]:
                 p = (
                     w0 * u
@@ -137,6 +163,8 @@ class Tube:
                 beta.append(min(p + short * K[i] * E, NOTHING))
             else:
                 beta.append(E)
+        turned_by = 0.5 * late * h * (known_r + alone[2]) + self._curve(late * h)
+        self._alone, self._known = ((alone[0], alone[1], alone[2]), known_psi + turned_by), UNKNOWN
         if self.certificate.estimated_heading:
             self._turn(E, late * h, short, heading, turned)
         if pulled is not NO_PULL or self._pulls:
@@ -149,7 +177,7 @@ class Tube:
     def _turn(self, E_r: float, h: float, short: float, heading: bool, turned: float) -> None:
         """The heading's bound: turned at the error of r, pulled by a measurement of it as the motion is."""
         c = self.certificate
-        curve = 0.25 * h * h * self.way[2]
+        curve = self._curve(h)
         E = min(self.psi + 0.5 * h * (self.beta[2] + E_r) + curve, NOTHING)
         if not heading:
             self.psi = E + turned
@@ -160,6 +188,10 @@ class Tube:
                 (1.0 - pull + short * c.K[2]) * E + again + pull * (1.0 + back * pull) * self.heading_noise
             )
         self._headings.push(self.psi)
+
+    def _curve(self, h: float) -> float:
+        """What a turning that is taken for even misses the heading by."""
+        return 0.25 * h * h * self.way[2]
 
     def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
         """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
@@ -205,8 +237,10 @@ class Tube:
 
     @property
     def widest(self) -> Three:
-        """The greatest bound of the window that a measurement of greatest age looks back on."""
-        return self._widest
+        """The greatest bound before a correction of the window that a measurement of greatest age looks back
+        on: what a sample may be compared with is off by no more."""
+        u, v, r = (min(a.greatest, b.greatest) for a, b in zip(self._before, self._alones, strict=True))
+        return u, v, r
 
     def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
