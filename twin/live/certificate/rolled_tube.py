@@ -67,7 +67,14 @@ class RolledTube(Tube):
         return self.beta, self.psi
 
     def know(self, most: Three, psi: float) -> None:
-        """Nothing to remember: a sample takes away so much of an error that this tube is about as narrow."""
+        """Of this and what the tube says the lesser holds, row by row, and the next way begins at it. A
+        sample takes away so much of an error that only in yaw, and where samples are seldom, there is much
+        between them."""
+        u, v, r = self.beta
+        self.beta = min(u, most[0]), min(v, most[1]), min(r, most[2])
+        self.psi = min(self.psi, psi)
+        if self._nodes:
+            self._nodes[-1] = self._nodes[-1]._replace(bound=(*self.beta, self.psi))
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open; before now it was at most its way from there."""
