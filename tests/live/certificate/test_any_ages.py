@@ -2,6 +2,7 @@
 step by step."""
 
 import random
+from itertools import pairwise
 
 import pytest
 
@@ -63,3 +64,5 @@ def test_inner_steps_grow_with_their_length_more_than_in_proportion():
             for j in FOUR:
                 assert some.M[i][j] - (i == j) <= share * (one.M[i][j] - (i == j)) * (1.0 + 1e-12)
         far = way(c.plant, force)[2]
+        for a_part, all_of_it in zip(some.pushes(force, far), one.pushes(force, far), strict=True):
+            assert a_part <= share * all_of_it * (1.0 + 1e-12)
