@@ -34,7 +34,7 @@ class Contradiction:
 
     def feed(self, gap: float, most: float, noise: float, accepted: bool) -> None:
         """One tick's sample: its distance from the estimate, the bound E, the noise n."""
-        if accepted:
+        if accepted and (self._share or abs(gap) > most + noise):
             self._share += ((abs(gap) > most + noise) - self._share) / MEMORY
 
     def fresh(self, gap: float, most: float, noise: float, now_s: float) -> None:
@@ -51,5 +51,7 @@ class Contradiction:
 
 def contradicted(rows: Sequence[str], tests: Sequence[Contradiction], now_s: float) -> str:
     """Which row is, in words; "" when none is."""
-    row = next((a for a, test in zip(rows, tests, strict=True) if test.at(now_s)), "")
-    return f"{row} is measured farther from the estimate than its bound allows" if row else ""
+    for row, test in zip(rows, tests, strict=True):
+        if test.at(now_s):
+            return f"{row} is measured farther from the estimate than its bound allows"
+    return ""

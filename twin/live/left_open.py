@@ -3,7 +3,7 @@
     |nu_hat - nu| <= |nu_hat - y| + n + age (way of a second)     row by row; unmeasured: all that a ship can
 """
 
-from math import pi
+from math import inf, pi
 
 from twin.live.certificate.observer_tube import NU, Three, Tube
 from twin.live.observer.observer import Observer
@@ -12,6 +12,7 @@ from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.num import num
 
+BOUNDED = (*NU, "psi")
 Bounds = tuple[Three, float]  # of (u, v, r) [m/s, m/s, rad/s] and of psi [rad]
 
 
@@ -19,43 +20,39 @@ class LeftOpen:
     """Of one tick: `since_late_s` is for how long every tick came in time, `inside_s` for how long the ship
     has surely been in the operating set, where its way of a second is bounded [s]."""
 
+    __slots__ = ("_ages_s", "_measured", "_observer", "_tube", "_wide_s", "oldest_s")
+
     def __init__(
         self, observer: Observer, measured: Measured, tube: Tube, since_late_s: float, inside_s: float
     ) -> None:
         self._observer, self._measured, self._tube = observer, measured, tube
-        self.oldest_s, self._inside_s = min(tube.oldest_s, since_late_s), inside_s
+        self.oldest_s = min(tube.oldest_s, since_late_s)
+        self._wide_s = max(self.oldest_s, inside_s)
+        si, time, now_s = measured.si, measured.time, measured.now_s
+        self._ages_s = {
+            a: now_s - time[a] if a in si and a not in measured.derived else inf for a in BOUNDED
+        }  # of what an instrument of its own measures
 
     def in_time(self, attribute: str) -> bool:
         """Measured by its own instrument, not older than the certificate allows, and not from before a late
         tick."""
-        return self._own(attribute) and self._measured.age_s(attribute) <= self.oldest_s
+        return self._ages_s[attribute] <= self.oldest_s
 
     def known(self, attribute: str) -> bool:
         """In time, or measured by its own instrument since it has been inside."""
-        return self.in_time(attribute) or (
-            self._own(attribute) and self._measured.age_s(attribute) <= self._inside_s
-        )
-
-    def _own(self, attribute: str) -> bool:
-        return attribute in self._measured.si and attribute not in self._measured.derived
+        return self._ages_s[attribute] <= self._wide_s
 
     @property
     def bounds(self) -> Bounds:
         """What the estimate is off by at most."""
-        e, measured, tube = self._observer.estimate, self._measured, self._tube
-        u, v, r = (
-            abs(measured.si[a] - now) + noise + measured.age_s(a) * way if self.known(a) else 2.0 * most
-            for a, now, noise, way, most in zip(
-                NU, (e.u, e.v, e.r), tube.noise, tube.way, self._observer.most, strict=True
-            )
-        )
-        return (u, v, r), self._heading()
-
-    def _heading(self) -> float:
-        if not self.known("psi"):
-            return pi
-        off = abs(turn(self._measured.si["psi"] - self._observer.estimate.psi))
-        return off + self._tube.heading_noise + self._measured.age_s("psi") * self._observer.most[2]
+        e, tube, si, most = self._observer.estimate, self._tube, self._measured.si, self._observer.most
+        u, v, r, psi = self._ages_s.values()
+        noise, way, far = tube.noise, tube.way, self._wide_s
+        return (
+            abs(si["u"] - e.u) + noise[0] + u * way[0] if u <= far else 2.0 * most[0],
+            abs(si["v"] - e.v) + noise[1] + v * way[1] if v <= far else 2.0 * most[1],
+            abs(si["r"] - e.r) + noise[2] + r * way[2] if r <= far else 2.0 * most[2],
+        ), (abs(turn(si["psi"] - e.psi)) + tube.heading_noise + psi * most[2] if psi <= far else pi)
 
     def unknown(self, guessed: tuple[str, ...], heard: set[str]) -> str:
         """Why nothing is known of the first of these speeds and rate of turn; "" where there is none.
@@ -76,5 +73,5 @@ class LeftOpen:
 
 def least(a: Bounds, b: Bounds) -> Bounds:
     """Of two bounds that both hold the lesser, row by row."""
-    u, v, r = (min(x, y) for x, y in zip(a[0], b[0], strict=True))
-    return (u, v, r), min(a[1], b[1])
+    (au, av, ar), (bu, bv, br) = a[0], b[0]
+    return (min(au, bu), min(av, bv), min(ar, br)), min(a[1], b[1])

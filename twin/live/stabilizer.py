@@ -95,14 +95,14 @@ class Stabilizer:
         self._count(measured.now_s)
         if proven := self._inside >= tube.window:
             tube.know(*known)
-            if tube.says_nothing():  # what is known says more
+            if nothing := tube.says_nothing():  # what is known says more
                 tube.reset(*least((tube.beta, tube.psi), known))
-            self.outside = (
-                tube.says_nothing() or self.broken or ("" if "H_s" in measured.si else NO_WAVES) or None
-            )
+                nothing = tube.says_nothing()
+            self.outside = nothing or self.broken or ("" if "H_s" in measured.si else NO_WAVES) or None
         else:
             tube.reset(*(known if self._inside > 1 else open_.bounds))
-        if tube.says_nothing():  # with measurements it comes back by itself
+            nothing = tube.says_nothing()
+        if nothing:  # with measurements it comes back by itself
             return Certified(
                 certificate.margin, USELESS, False, degrees(pi), self._step_margin, self._authority
             )

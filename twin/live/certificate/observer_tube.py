@@ -32,6 +32,12 @@ def look_back(m: int) -> int:
     return 2 * m + 1
 
 
+def halves(c: Certificate) -> Three:
+    """Half of the set's width of u, v, r [m/s, m/s, rad/s]: a bound that reaches it says nothing."""
+    (u0, u1), (v0, v1), (r0, r1) = (c.operating.ranges[name] for name in NU)
+    return 0.5 * (u1 - u0), 0.5 * (v1 - v0), 0.5 * (r1 - r0)
+
+
 class Highest:
     """The greatest of the last so many values, in a time that does not grow with their number."""
 
@@ -53,11 +59,6 @@ class Highest:
         if kept[0][0] <= self.count - 1 - self.size:
             kept.popleft()
         return kept[0][1]
-
-    @property
-    def greatest(self) -> float:
-        """The greatest of the window."""
-        return self.kept[0][1]
 
     def raised(self, x: float) -> float:
         """The newest value is at least this, after all."""
@@ -146,8 +147,9 @@ class Tube:
         for i, (v0, v1, v2, d, t, w0, w1, w2, again, d0, d1, d2, c) in enumerate(table):
             E = min(v0 * u + v1 * v + v2 * r + d + t * psi, NOTHING)
             widest = self._before[i].push(E)
-            alone.append(min(v0 * known_u + v1 * known_v + v2 * known_r + d + t * known_psi, NOTHING))
-            self._alones[i].push(alone[i])
+            by_itself = min(v0 * known_u + v1 * known_v + v2 * known_r + d + t * known_psi, NOTHING)
+            alone.append(by_itself)
+            self._alones[i].push(by_itself)
             if received[i]:
                 p = (
                     w0 * u
@@ -209,6 +211,7 @@ class Tube:
         if self._sea == (H_s, float(acts)):
             return
         self._sea = H_s, float(acts)
+        self._halves = halves(self.certificate)
         c, step, one = self.certificate, self.certificate.step, self.periods.of(1)
         self._disturbance = (
             c.disturbance.at(H_s) if acts else add(c.disturbance.at(H_s), scaled_row(-1.0, c.saturation))
@@ -239,8 +242,12 @@ class Tube:
     def widest(self) -> Three:
         """The greatest bound before a correction of the window that a measurement of greatest age looks back
         on: what a sample may be compared with is off by no more."""
-        u, v, r = (min(a.greatest, b.greatest) for a, b in zip(self._before, self._alones, strict=True))
-        return u, v, r
+        (u, v, r), (first, second, third) = self._before, self._alones
+        return (
+            min(u.kept[0][1], first.kept[0][1]),
+            min(v.kept[0][1], second.kept[0][1]),
+            min(r.kept[0][1], third.kept[0][1]),
+        )
 
     def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
@@ -252,10 +259,12 @@ class Tube:
 
     def says_nothing(self) -> str | None:
         """In words, while the bound is as wide as the operating set itself; else None."""
-        ranges = self.certificate.operating.ranges
-        for name, b in zip(NU, self.beta, strict=True):
-            low, high = ranges[name]
-            if not b < 0.5 * (high - low):
+        u, v, r = self.beta
+        most_u, most_v, most_r = self._halves
+        if u < most_u and v < most_v and r < most_r:
+            return None
+        for name, b, half in zip(NU, self.beta, self._halves, strict=True):
+            if not b < half:
                 wide = f"the bound of {WORDS[name]} is as wide as the operating set"
                 return f"{wide}, width = ± {in_unit(name, b)}"
         return None

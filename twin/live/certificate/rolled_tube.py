@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
-from twin.live.certificate.observer_tube import NOTHING, UNKNOWN, Three, Tube
+from twin.live.certificate.observer_tube import NOTHING, UNKNOWN, Three, Tube, halves
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.observer.operating import NU, outside_in_words
@@ -148,6 +148,7 @@ class RolledTube(Tube):
         if self._sea == (H_s, float(acts)):
             return
         self._sea = H_s, float(acts)
+        self._halves = halves(self.certificate)
         c = self.certificate
         force = c.disturbance.at(H_s)
         if not acts:
