@@ -7,9 +7,9 @@ import pytest
 
 from twin.live.certificate.certificate import certify
 from twin.live.certificate.observer_tube import UNKNOWN, Tube
-from twin.live.clock import is_hole
 from twin.live.contradiction import BEYOND, LIMIT, Contradiction
 from twin.live.gates.crosscheck import CURRENT, CrossChecks, Stream
+from twin.live.gates.hole import is_hole
 from twin.live.gates.lacking import CorrectedTick
 from twin.live.left_open import LeftOpen, least
 from twin.live.parity import WINDOW_S

@@ -13,8 +13,8 @@ own. A text never holds a number, so that it can be counted.
 from collections.abc import Iterator
 from math import cos, hypot, sin
 
-from twin.live.clock import is_hole
 from twin.live.gates.cusum import SLOWLY, Cusum
+from twin.live.gates.hole import is_hole
 from twin.live.gates.lacking import FAST, SLOW, CorrectedTick, Lacking
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured

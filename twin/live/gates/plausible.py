@@ -10,7 +10,7 @@ asks whether they agree."""
 from collections.abc import Sequence
 from math import copysign, sqrt
 
-from twin.live.clock import is_hole
+from twin.live.gates.hole import is_hole
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
