@@ -56,6 +56,11 @@ BENCHES: dict[str, Bench] = {
         "is the promise kept where its assumptions are not?",
         "twin-bench assumptions --seconds 300",
     ),
+    "promise": Bench(
+        "bench.promise_returns",
+        "is the promise given while all is well, and does it come back?",
+        "twin-bench promise --hull kvlcc2",
+    ),
     "seaway": Bench(
         "bench.sea_disturbance",
         "what a seaway costs the promise, and is it kept there?",

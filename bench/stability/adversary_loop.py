@@ -78,11 +78,12 @@ class Loops(AdversaryFleet):
 
     def step(self, k: int) -> np.ndarray:
         """One tick of all loops on what their ships' instruments say, then the ships sail on; (3, runs) the
-        error at the tick."""
-        self._tick(k)
-        error = self.estimate - np.array(self.truth[3:])
+        error at the tick. The rudder moves before the tick: what it moved within a sample would be a force
+        beyond the adversary's, which takes all of D."""
         self._helm()
         self.rudder += np.clip(self.inputs["delta"] - self.rudder, -STEERS * self.h, STEERS * self.h)
+        self._tick(k)
+        error = self.estimate - np.array(self.truth[3:])
         self.push = (
             -np.sign(self.inverse.T @ (self._against(k) / np.array(self.c.bound)[:, None])) * self.limit
         )

@@ -7,7 +7,15 @@ import pytest
 
 from bench.stability.attack.adversary_search import GREEDY, PASSES, RANDOM, STEEPEST, attack, horizon
 from bench.stability.attack.bounds import bounds
-from bench.stability.attack.cases import FULL_RUN, INSIDE, AttackCase, Excess, Group, certified_for
+from bench.stability.attack.cases import (
+    FULL_RUN,
+    INSIDE,
+    MIXED_GROUPS,
+    AttackCase,
+    Excess,
+    Group,
+    certified_for,
+)
 from bench.stability.attack.orders import ages_of, random_orders
 from bench.stability.attack.run_batch import sail
 from bench.stability.attack.section import HEAD, section_of, with_section
@@ -34,6 +42,13 @@ def test_no_adversary_breaks_the_bound_inside_the_assumptions(case):
     assert [g.violations for g in found.groups] == [0] * len(INSIDE)
     assert all(g.samples > 0 and 0.2 < g.of_tube.max() <= 1.0 for g in found.groups)
     assert all(g.of_bound.max() <= 1.0 for g in found.groups)
+
+
+@pytest.mark.parametrize("case", [ROLLED, AttackCase("kvlcc2_model", 10.0)])
+def test_samples_of_different_ages_break_neither_the_live_bound_nor_the_one_of_any_ages(case):
+    found = attack(case, 600, 3, MIXED_GROUPS).groups
+    assert [g.violations for g in found] == [0] * len(MIXED_GROUPS)
+    assert all(g.bound and 0.2 < g.of_bound.max() <= 1.0 and g.of_tube.max() > 0.7 for g in found)
 
 
 def test_the_adversary_beats_as_many_random_runs_clearly_on_every_axis():

@@ -45,9 +45,9 @@ def every(bridge, steps, count):
 @pytest.mark.parametrize("steps", (2, 3, 5, 10, 30))
 def test_A5_late_ticks_widen_the_bound_and_count_no_measurement(make_service, steps):
     """Test: ticks each 0.2 to 3 s where 0.105 s are certified. Expected: the first widens the bound by more
-    than a usual tick could; while they last a promise is the exception and no error leaves it; the usual one
-    is back a minute later."""
-    bridge, inside = make_service(), 0
+    than a usual tick could; while they last the bound grows beyond the usual one, until it is what the
+    instruments leave open, and no error leaves it; the usual one is back a minute later."""
+    bridge, widest = make_service(), 0.0
     usual = bridge.run(60.0)[-1].certificate.bound
     every(bridge, steps, 1)
     assert bridge.run(0.1)[-1].certificate.bound > usual or not bridge.ticks[-1].certificate.inside
@@ -57,9 +57,9 @@ def test_A5_late_ticks_widen_the_bound_and_count_no_measurement(make_service, st
         off = hypot(
             e.surge_velocity_mps - true["surge_velocity_mps"], e.sway_velocity_mps - true["sway_velocity_mps"]
         )
-        inside += tick.certificate.inside
+        widest = max(widest, tick.certificate.bound)
         assert off <= tick.certificate.bound or not tick.certificate.inside
-    assert inside < 45
+    assert widest > 1.1 * usual
     after = bridge.run(90.0)[-1].certificate
     assert after.inside and after.bound == pytest.approx(usual, rel=0.25)
 

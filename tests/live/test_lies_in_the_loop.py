@@ -29,9 +29,6 @@ SOON_S = {  # wanted of the nine that docs/results/endurance.md adds
 LATER_S = {  # falls short: said later than wanted, as docs/results/endurance.md says
     "rudder feedback stuck": 15.0,  # measured: 11.2 s, wanted 10
 }
-WRONG_S = {  # falls short: so long a promise is wrong before anything is said
-    "positions and speed drawn away together, 1 m/s": 2.0,  # measured: 1.1 s
-}
 
 
 class Sea:
@@ -81,7 +78,7 @@ def test_I5_I6_I17_I18_I21_I22_I23_I24_on_the_services_loop_a_lie_is_said_in_tim
     """Test: the lie, from one moment on. Expected: a word of it within the seconds that are wanted; in no tick a
     promise with an error beyond its bound; where the instruments contradict each other no promise, and nothing is
     learned."""
-    loop, memory, began_s, said_s, k, wrong_s = sea.copy(), {}, None, None, sea.first, 0.0
+    loop, memory, began_s, said_s, k = sea.copy(), {}, None, None, sea.first
     wanted_s = LATER_S.get(lie.name, SOON_S.get(lie.name, lie.wanted_s))
     while said_s is None or (k - sea.first) * STEP_S < said_s + AFTER_S:
         t, row = (k - sea.first) * STEP_S, dict(sea.rows[k])
@@ -91,11 +88,8 @@ def test_I5_I6_I17_I18_I21_I22_I23_I24_on_the_services_loop_a_lie_is_said_in_tim
         ):
             began_s = t
         tick = heard(loop, row, k)
-        wrong = STEP_S * (tick.certificate.inside and sea.wrong(loop, k))
-        wrong_s += wrong
-        assert wrong_s <= WRONG_S.get(lie.name, 0.0) and not (wrong and said_s is not None), (
-            f"a wrong promise, {t:.1f} s"
-        )
+        wrong = tick.certificate.inside and sea.wrong(loop, k)
+        assert not wrong, f"a wrong promise, {t:.1f} s"
         if loop.checks.doubt and said_s is not None and t > said_s:
             assert not tick.certificate.inside and loop.learned.adaptation.frozen
         if said_s is None and any(words(reason) not in sea.said for reason in tick.reasons):

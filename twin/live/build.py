@@ -74,7 +74,7 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
             ship, tuple(settings["prediction.horizons_s"]), settings["prediction.refresh_s"], rate
         ),
         sensors=Sensors(ship, settings.sources, settings["sensors.max_delay_s"]),
-        guard=Guard(ship, learned, settings["guard.reckoning_s"]),
+        guard=Guard(ship, learned, settings["guard.reckoning_s"], period_s=1.0 / rate),
     )
     if said := loop.stabilizer.why_not:
         notes.append(f"certificate: {said}")

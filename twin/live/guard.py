@@ -60,14 +60,21 @@ class HeldControl:
 class Guard:
     """Judges each tick."""
 
-    def __init__(self, ship: Ship, learned: LearnedForce, reckoning_s: float = 60.0, hold_s: float = 0.0):
+    def __init__(
+        self,
+        ship: Ship,
+        learned: LearnedForce,
+        reckoning_s: float = 60.0,
+        hold_s: float = 0.0,
+        period_s: float = 0.1,
+    ):
         T = ship.L_pp / ship.U_0
         # how long the model may run without measurements before nothing is promised
         self.reckoning_s = reckoning_s
         self.learned = learned
         self.controls = controls_of(ship)
         self._counting = "heading", "surge", "sway", "yaw", *self.controls.values()
-        self.plausible = Plausibility(ship)
+        self.plausible = Plausibility(ship, period_s)
         hold_s = hold_s or 3.0 * T
         self._worse = HeldControl(hold_s)
         self._broken = HeldControl(hold_s)

@@ -4,34 +4,31 @@ the bound of the observer's error and says whether the assumptions of its proof 
 
 from math import degrees, hypot, pi
 
-from twin.live.certificate.observer_tube import NO_PULL, Three, Tube
+from twin.live.certificate.observer_tube import NO_PULL, NU, Tube
 from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.rolled_tube import RolledTube
+from twin.live.contradiction import Contradiction, contradicted
 from twin.live.guard import CONTROLS
+from twin.live.left_open import Bounds, LeftOpen, least
 from twin.live.observer.observer import Observer
-from twin.live.observer.operating import WORDS
 from twin.live.observer.rollback import RollBack
 from twin.live.parity import Parity
 from twin.live.seen import Certified
-from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.num import num
 from twin.physics.state import Situation
 
-NU = ("u", "v", "r")
 NEEDED = {**CONTROLS, "psi": "heading"}  # inputs of the physics that nothing stands in for
 # the bound goes on as for calm water, to be held against the measurements; it is not promised
 NO_WAVES = "no wave height"
-MEMORY = 100.0  # ticks with a measurement over which it is counted how often they contradict the bound
-SURPRISED = 0.1  # share of them from which it does not hold
-
 USELESS = 1e3  # m/s: a bound above every speed at sea
 
 
 class Stabilizer:
     """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being
     false. Where it may have left the operating set the tube begins anew from what is measured, and promises
-    again once all that a late measurement looks back on is inside."""
+    again once all that a late measurement looks back on is inside. Till then a measurement counts only by
+    what it leaves open by itself, and that is carried on: one sample in many ticks suffices."""
 
     def __init__(
         self, tube: Tube | None = None, why_not: str = "no certificate", authority_margin: float = 0.0
@@ -43,8 +40,10 @@ class Stabilizer:
         self._restarts = -1
         self._seaway = False  # whether a wave height is known
         self._inside = 0  # ticks that it has surely been in the set
+        self._inside_s = 0.0  # since when
         self._since_late_s = float("inf")  # seconds for which every tick came in time
-        self._surprised = dict.fromkeys(NU, 0.0)
+        self._watched = tuple([Contradiction() for _ in NU])
+        self.broken = ""  # what shows that the promise's conditions do not hold
         self._heard: set[str] = set()  # which of u, v, r an instrument of its own has measured so far
         self._guessed: tuple[str, ...] = NU  # whose bound rests on no measurement, but on what a ship can do
         self.outside: str | None = why_not
@@ -74,26 +73,36 @@ class Stabilizer:
         if observer.restarts != self._restarts:
             self._begin(observer, measured, tube)
         late = self._clocked(dt, tube)
-        self._steps(observer, measured, tube, dt, acts)
+        open_ = LeftOpen(observer, measured, tube, self._since_late_s, self._inside_for_s(measured.now_s))
+        self._steps(observer, measured, tube, open_, dt, acts)
         if ("H_s" in measured.si) is not self._seaway:  # till now the noise was that of another sea
             self._seaway, self._inside = "H_s" in measured.si, 0
-            tube.reset(self._first(observer, measured, tube), self._heading(observer, measured, tube))
-        certificate, first = tube.certificate, self._first(observer, measured, tube)
-        within = min(tube.beta[0], first[0]), min(tube.beta[1], first[1]), min(tube.beta[2], first[2])
+            tube.reset(*open_.bounds)
+        certificate, known = tube.certificate, self._known(observer, open_, tube)
+        if not self._inside:
+            self._guessed = tuple(a for a in NU if not open_.known(a))
+        within = least((tube.beta, tube.psi), known) if self._inside >= tube.window else known
         apart = self._apart(observer, measured, tube, dt)
-        left = tube.outside(s, within, dt)
+        left = tube.outside(s, within[0], dt)
         self.outside = (
-            late or doubt or apart or _unsure(measured) or (left and self._unknown(measured, tube)) or left
+            late
+            or doubt
+            or apart
+            or _unsure(measured)
+            or (left and open_.unknown(self._guessed, self._heard))
+            or left
         )
-        self._inside = self._inside + 1 if self.outside is None else 0
+        self._count(measured.now_s)
         if proven := self._inside >= tube.window:
-            self.outside = (
-                tube.says_nothing() or self.broken or ("" if "H_s" in measured.si else NO_WAVES) or None
-            )
+            tube.know(*known)
+            if nothing := tube.says_nothing():  # what is known says more
+                tube.reset(*least((tube.beta, tube.psi), known))
+                nothing = tube.says_nothing()
+            self.outside = nothing or self.broken or ("" if "H_s" in measured.si else NO_WAVES) or None
         else:
-            tube.reset(first, self._heading(observer, measured, tube))
-            self._guessed = tuple(a for a in NU if not self._in_time(a, measured, tube))
-        if tube.says_nothing():  # with measurements it comes back by itself
+            tube.reset(*(known if self._inside > 1 else open_.bounds))
+            nothing = tube.says_nothing()
+        if nothing:  # with measurements it comes back by itself
             return Certified(
                 certificate.margin, USELESS, False, degrees(pi), self._step_margin, self._authority
             )
@@ -115,11 +124,37 @@ class Stabilizer:
 
     def _begin(self, observer: Observer, measured: Measured, tube: Tube) -> None:
         """The observer was set to what is measured."""
-        tube.reset(self._first(observer, measured, tube), self._heading(observer, measured, tube))
+        open_ = LeftOpen(observer, measured, tube, self._since_late_s, 0.0)
+        tube.reset(*open_.bounds)
+        self._guessed = tuple(a for a in NU if not open_.known(a))
         self._restarts, self._inside = observer.restarts, tube.window
+        self._inside_s = measured.now_s
         self._seaway = "H_s" in measured.si
         if self._parity:
             self._parity.begin()
+
+    def _inside_for_s(self, now_s: float) -> float:
+        return now_s - self._inside_s if self._inside else 0.0
+
+    def _known(self, observer: Observer, open_: LeftOpen, tube: Tube) -> Bounds:
+        """What bounds the error even while a late measurement may still look back outside: what the
+        instruments leave open, or what was known in the last tick carried on, if it was inside there."""
+        if not self._inside:
+            return open_.bounds
+        pulled = observer.pulled
+        carried = tube.carried((pulled["u"], pulled["v"], pulled["r"]), pulled["psi"], self._inside_s)
+        return least(open_.bounds, carried)
+
+    def _count(self, now_s: float) -> None:
+        """For how long it has surely been inside; a bound that was contradicted begins anew afterwards."""
+        was = self.broken
+        self.broken = contradicted(NU, self._watched, now_s) if self.promises else ""
+        if self.outside is not None or (was and not self.broken):
+            self._inside = 0
+        if self.outside is None:
+            self._inside += 1
+        if self._inside == 1:
+            self._inside_s = now_s
 
     def _clocked(self, dt: float, tube: Tube) -> str:
         """Remembers when a tick last came late; in words, when it came so late that nothing can be said of
@@ -132,80 +167,54 @@ class Stabilizer:
             f"the tick came late, after = {num(dt, 2)} s where {num(tube.certificate.h, 2)} s are certified"
         )
 
-    def _steps(self, observer: Observer, measured: Measured, tube: Tube, dt: float, acts: bool) -> None:
-        got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
-        self._watch(observer, got, tube)
+    def _steps(
+        self,
+        observer: Observer,
+        measured: Measured,
+        tube: Tube,
+        open_: LeftOpen,
+        dt: float,
+        acts: bool,
+    ) -> None:
+        got = tuple([observer.received[a] and open_.in_time(a) for a in NU])
         self._heard |= {a for a in NU if a in measured.si and a not in measured.derived}
-        self._guessed = tuple(a for a in self._guessed if not self._in_time(a, measured, tube))
+        self._guessed = tuple(a for a in self._guessed if not open_.known(a))
         sea = measured.si.get("H_s", 0.0)
         if isinstance(tube, RolledTube) and isinstance(observer, RollBack):
             tube.follow(observer.path, sea, acts)
-            return
-        heading = observer.received["psi"] and self._in_time("psi", measured, tube)
-        in_time = self._since_late_s > 0.0
-        pulled = tuple([0.0 if g and in_time else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
-        tube.step(got, sea, pulled if any(pulled) else NO_PULL, dt, acts, heading, observer.pulled["psi"])  # type: ignore[arg-type]
-
-    @property
-    def broken(self) -> str:
-        """What shows that the promise's conditions do not hold; "" when nothing does, or nothing was
-        promised."""
-        if self.tube is None or not self.tube.certificate.ok:
-            return ""
-        axis = next((a for a, share in self._surprised.items() if share > SURPRISED), "")
-        return f"{axis} is measured farther from the estimate than its bound allows" if axis else ""
-
-    def _watch(self, observer: Observer, got: tuple[bool, ...], tube: Tube) -> None:
-        """How often an accepted sample lies farther from the estimate than bound and noise allow: one in many
-        may, a row of them tells of a larger disturbance or a worse sensor than was assumed."""
-        for axis, accepted, most, noise in zip(NU, got, tube.widest, tube.noise, strict=True):
-            if accepted:
-                off = abs(observer.innovation[axis]) > most + noise
-                self._surprised[axis] += (off - self._surprised[axis]) / MEMORY
-
-    def _first(self, observer: Observer, measured: Measured, tube: Tube) -> Three:
-        """What the estimate is off by at most, asking the instruments alone: how far it lies from what was
-        measured, its noise and its way since; where nothing was, all that a ship can."""
-        e = observer.estimate
-        u, v, r = (
-            abs(measured.si[a] - now) + noise + measured.age_s(a) * way
-            if self._in_time(a, measured, tube)
-            else 2.0 * most
-            for a, now, noise, way, most in zip(
-                NU, (e.u, e.v, e.r), tube.noise, tube.way, observer.most, strict=True
+        else:
+            heading = observer.received["psi"] and open_.in_time("psi")
+            in_time = self._since_late_s > 0.0
+            pulled = tuple(
+                [0.0 if g and in_time else observer.pulled[a] for a, g in zip(NU, got, strict=True)]
             )
-        )
-        return u, v, r
+            tube.step(
+                got,  # type: ignore[arg-type]
+                sea,
+                pulled if any(pulled) else NO_PULL,  # type: ignore[arg-type]
+                dt,
+                acts,
+                heading,
+                observer.pulled["psi"],
+            )
+        self._watch(observer, measured, got, tube, open_)
 
-    def _heading(self, observer: Observer, measured: Measured, tube: Tube) -> float:
-        """The same of the heading [rad]."""
-        if not self._in_time("psi", measured, tube):
-            return pi
-        off = abs(turn(measured.si["psi"] - observer.estimate.psi))
-        return off + tube.heading_noise + measured.age_s("psi") * observer.most[2]
-
-    def _unknown(self, measured: Measured, tube: Tube) -> str:
-        """Which speed or rate of turn the observer's bound knows nothing of, and why; "" when each has been
-        measured since the bound began."""
-        if not self._guessed:
-            return ""
-        a = self._guessed[0]
-        name, old_s = WORDS[a], min(tube.oldest_s, self._since_late_s)
-        if a not in self._heard:
-            return f"{name} is not measured yet"
-        if a not in measured.si or a in measured.derived:
-            return f"{name} is not measured"
-        return (
-            f"{name} is not measured often enough, age = {num(measured.age_s(a), 2)} s where at most "
-            f"{num(old_s, 2)} s are certified"
-        )
-
-    def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
-        """Measured by its own instrument, not older than the certificate allows, and not from before a late
-        tick."""
-        if attribute in measured.derived or attribute not in measured.si:
-            return False
-        return measured.age_s(attribute) <= min(tube.oldest_s, self._since_late_s)
+    def _watch(
+        self,
+        observer: Observer,
+        measured: Measured,
+        got: tuple[bool, ...],
+        tube: Tube,
+        open_: LeftOpen,
+    ) -> None:
+        """Whether samples lie farther from the estimate than bound and noise allow."""
+        for test, axis, accepted, most, noise in zip(
+            self._watched, NU, got, tube.widest, tube.noise, strict=True
+        ):
+            gap = observer.innovation.get(axis, 0.0)
+            test.feed(gap, most, noise, accepted)
+            if axis in measured.fresh and open_.in_time(axis):
+                test.fresh(gap, most, noise, measured.now_s)
 
 
 def _unsure(measured: Measured) -> str:

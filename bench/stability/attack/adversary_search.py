@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.stability.attack.bounds import bounds
-from bench.stability.attack.cases import FULL_RUN, GROUPS, AttackCase, Group, certified_for
+from bench.stability.attack.cases import FULL_RUN, GROUPS, MIXED, AttackCase, Group, certified_for
 from bench.stability.attack.orders import Orders, random_orders
 from bench.stability.attack.run_batch import RunBatch, sail
 from bench.stability.attack.steepest import worse
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.certificate import Certificate
+from twin.live.certificate.rolled import bound_at_any_ages
 
 RANDOM, GREEDY, STEEPEST, MOVED = "random", "greedy", "steepest", "moved"
 PASSES = (RANDOM, GREEDY, STEEPEST, MOVED, STEEPEST)
@@ -27,8 +28,8 @@ AXES = 3
 class Attacked:
     """What became of the runs of one group; ratios by axis (u, v, r).
 
-    of_tube, of_bound: the greatest error over the live bound, and over the ultimate one (only where every
-    tick is full and every sample comes); by_pass: the greatest error over the ultimate bound (over the tube
+    of_tube, of_bound: the greatest error over the live bound, and over the ultimate one `bound` (None: there
+    is none for such ticks and samples); by_pass: the greatest error over the ultimate bound (over the tube
     where there is none) of each way to attack; worst: which run broke a bound first."""
 
     group: Group
@@ -40,6 +41,7 @@ class Attacked:
     of_bound: np.ndarray
     by_pass: dict[str, np.ndarray]
     first: str = ""
+    bound: tuple[float, ...] | None = None
 
     @property
     def full(self) -> bool:
@@ -61,6 +63,7 @@ class Attacked:
             np.maximum(self.of_bound, other.of_bound),
             passes,
             self.first or other.first,
+            self.bound,
         )
 
 
@@ -158,10 +161,10 @@ def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name
     # of the heading nothing is promised, but inside the assumptions its bound must hold where it is a state
     rows = slice(None) if group.inside and w.c.estimated_heading else slice(AXES)
     broken = np.any(over[:, rows] > 1.0 + ROUNDING, axis=1)
-    bound = np.array(w.c.bound)[:, None]
-    of_bound = np.where(inside[:, None], error[:, :AXES] / bound, 0.0).max(axis=(0, 2))
-    if group.pattern != FULL_RUN:
-        of_bound = np.zeros(AXES)
+    bound, of_bound = ultimate(w.c, group), np.zeros(AXES)
+    if bound:
+        ratio = error[:, :AXES] / np.array(bound)[:, None]
+        of_bound = np.where(inside[:, None], ratio, 0.0).max(axis=(0, 2))
     first = ""
     if broken.any():
         k, run = np.argwhere(broken)[0]
@@ -177,4 +180,16 @@ def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name
         of_bound,
         {way: of_bound if group.pattern == FULL_RUN else late},
         first,
+        bound,
     )
+
+
+def ultimate(c: Certificate, group: Group) -> tuple[float, ...] | None:
+    """The ultimate bound (u, v, r) of a group whose every tick is full and every sample comes; None: of
+    another one, or there is none."""
+    if group.pattern == FULL_RUN:
+        return c.bound
+    if group.pattern not in MIXED:
+        return None
+    found = bound_at_any_ages(c.plant, c.K, c.inner, c.noise, c.disturbance.at(0.0), c.heading_noise)
+    return found[:AXES] if found else None

@@ -6,12 +6,16 @@ from math import degrees
 import numpy as np
 
 from bench.stability.attack.adversary_search import RANDOM, Attacked, CaseAttacked
-from bench.stability.attack.cases import DELAYS, EXCESSES, FACTORS, Excess
+from bench.stability.attack.cases import DELAYS, EXCESSES, FACTORS, MIXED, Excess
 from bench.stability.attack.section import HEAD
 
 INSIDE = (
     "| ship | Hz | certificate | K 1/s | b | sample's age | runs | left | broken | error/tube | error/b "
     "| at random |"
+)
+MIXED_AGES = (
+    "| ship | Hz | certificate | age of u, v, r, psi in ticks | b, ages alike | b' | runs | broken "
+    "| error/tube | error/b' |"
 )
 OUTSIDE = "| ship | Hz | certificate |"
 
@@ -45,6 +49,13 @@ def section(found: Sequence[CaseAttacked], command: str) -> str:
         "",
         *_table(INSIDE, [row for x in found for row in _inside(x)]),
         "",
+        "### Samples of different ages",
+        "",
+        "Of observers that correct a sample at its own time (Theorem 3), in every tick a sample of each row. "
+        "b': the ultimate bound that covers any ages up to a tick.",
+        "",
+        *_table(MIXED_AGES, [row for x in found for row in _mixed(x)]),
+        "",
         "### Outside",
         "",
         f"The least factor tried ({', '.join(f'{f:g}' for f in FACTORS)}) over the limit at which the "
@@ -66,7 +77,11 @@ def _table(head: str, rows: list[list[str]]) -> list[str]:
 def _inside(x: CaseAttacked) -> list[list[str]]:
     rows = []
     for delay in DELAYS if x.delay else DELAYS[:1]:
-        some = [g for g in x.groups if g.group.inside and (g.group.delay == delay or not x.delay)]
+        some = [
+            g
+            for g in x.groups
+            if g.group.inside and g.group.pattern not in MIXED and (g.group.delay == delay or not x.delay)
+        ]
         u, v, r = x.bound
         rows.append(
             [
@@ -80,6 +95,25 @@ def _inside(x: CaseAttacked) -> list[list[str]]:
                 _ratios(np.max([g.of_tube for g in some], axis=0)),
                 _ratios(np.max([g.of_bound for g in some], axis=0)),
                 _ratios(np.max([g.by_pass[RANDOM] for g in some if g.full], axis=0)),
+            ]
+        )
+    return rows
+
+
+def _mixed(x: CaseAttacked) -> list[list[str]]:
+    rows = []
+    for g in (g for g in x.groups if g.group.pattern in MIXED):
+        u, v, r = g.bound or (np.inf,) * 3
+        rows.append(
+            [
+                *_name(x),
+                ", ".join(f"{age:g}" for age in g.group.ages),
+                f"{x.bound[0]:.3f}, {x.bound[1]:.3f}, {degrees(x.bound[2]):.3f}",
+                f"{u:.3f}, {v:.3f}, {degrees(r):.3f}" if g.bound else "none",
+                str(g.runs),
+                str(g.violations),
+                _ratios(g.of_tube),
+                _ratios(g.of_bound) if g.bound else "",
             ]
         )
     return rows

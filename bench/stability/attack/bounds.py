@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench.stability.attack.cases import FULL_RUN
+from bench.stability.attack.cases import FULL_RUN, MIXED
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.rolled_tube import RolledTube, tube_of
 from twin.live.observer.rollback import Path, Pull, Stretch
@@ -19,7 +19,7 @@ def bounds(w: Waters) -> np.ndarray:
         # of full ticks all tubes are alike but for the ages that an observer corrects at
         key = (
             group.pattern,
-            (group.delay if w.c.inner > 1 else 0.0) if group.pattern == FULL_RUN else float(i),
+            (group.delay if w.c.inner > 1 else 0.0) if group.pattern in (FULL_RUN, *MIXED) else float(i),
         )
         if key not in seen:
             seen[key] = _of(w, i)
@@ -32,7 +32,7 @@ def _of(w: Waters, i: int) -> np.ndarray:
     told = [(*tube.beta, tube.psi)]
     lasts = w.lasts[:, i] / group.excess.tick
     if isinstance(tube, RolledTube):
-        paths = _paths(w, i, lasts * h, group.delay)
+        paths = _paths(w, i, lasts * h, group.ages)
         for path in paths:
             tube.follow(path)
             told.append((*tube.beta, tube.psi))
@@ -43,35 +43,29 @@ def _of(w: Waters, i: int) -> np.ndarray:
     return np.array(told)
 
 
-def _paths(w: Waters, i: int, lasts_s: np.ndarray, age: float) -> list[Path]:
-    """The way of an observer whose samples are all of one age (0, a half or one tick): each tick anew from
-    the moment of its samples."""
+def _paths(w: Waters, i: int, lasts_s: np.ndarray, ages: tuple[float, ...]) -> list[Path]:
+    """The way of an observer whose samples of each row are all of one age (0, a half or one tick): each tick
+    anew from the tick before."""
     ticks_s = np.concatenate(([0.0], np.cumsum(lasts_s)))
     u, v, r = (0.5 * sum(w.c.operating.ranges[name]) for name in ("u", "v", "r"))
-    still = u, v, r
+    cut = 0.5 in ages
+    steps = int(np.ceil(0.5 * w.c.inner)) if cut else w.c.inner
     paths = []
     for k in range(w.ticks):
-        pulls = [
-            Pull(place, True, 0.0) for place, comes in zip(PULLS, w.comes[k, :, i], strict=True) if comes
-        ]
-        now_s = float(ticks_s[k + 1])
-        taken_s = float(ticks_s[k]) if age == 1.0 else now_s - age * float(lasts_s[k])
-        if age == 1.0 and k == 0:
-            pulls = []  # from before the first tick: it is the start
-        start_s = float(ticks_s[k])
-        stretches = []
-        if age == 0.0:
-            stretches = [Stretch(now_s, [still] * w.c.inner, pulls, NOWHERE)]
-        elif age < 1.0:
-            steps = int(np.ceil(0.5 * w.c.inner))
-            stretches = [
-                Stretch(taken_s, [still] * steps, pulls, NOWHERE),
-                Stretch(now_s, [still] * steps, [], NOWHERE),
+
+        def pulls(age: float, k: int = k) -> list[Pull]:
+            return [
+                Pull(place, True, 0.0)
+                for place, of_row, comes in zip(PULLS, ages, w.comes[k, :, i], strict=True)
+                if of_row == age and comes
             ]
-        else:
-            stretches = [
-                Stretch(taken_s, [], pulls, NOWHERE),
-                Stretch(now_s, [still] * w.c.inner, [], NOWHERE),
-            ]
-        paths.append(Path(start_s, NOWHERE, stretches))
+
+        before_s, now_s = float(ticks_s[k]), float(ticks_s[k + 1])
+        motions = [(u, v, r)] * steps
+        stretches = [Stretch(now_s, motions, pulls(0.0), NOWHERE)]
+        if cut:
+            stretches.insert(0, Stretch(now_s - 0.5 * float(lasts_s[k]), motions, pulls(0.5), NOWHERE))
+        if k and pulls(1.0):  # from before the first tick: it is the start
+            stretches.insert(0, Stretch(before_s, [], pulls(1.0), NOWHERE))
+        paths.append(Path(before_s, NOWHERE, stretches))
     return paths

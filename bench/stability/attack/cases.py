@@ -16,6 +16,8 @@ RATES_HZ = (10.0, 20.0, 50.0)
 FACTORS = (1.1, 1.25, 1.5, 2.0)  # outside: times the limit
 DELAYS = (0.0, 0.5, 1.0)  # of the greatest age that the certificate allows
 FULL_RUN, SHORT, GAPS = "full", "short", "gaps"
+AHEAD, ASTERN = "yaw late", "yaw prompt"  # every tick full, samples of each row of an age of its own
+MIXED = {AHEAD: (0.0, 0.5, 1.0, 0.0), ASTERN: (1.0, 0.5, 0.0, 1.0)}  # of u, v, r, psi, share of the greatest
 
 
 class Excess(NamedTuple):
@@ -30,7 +32,7 @@ class Excess(NamedTuple):
 class Group(NamedTuple):
     """Runs of one kind: the greatest age of a sample as a share of what is allowed, the pattern of ticks and
     samples (full: every tick as long as allowed, every sample comes; short: ticks up to a tenth shorter;
-    gaps: samples get lost), and what is exceeded."""
+    gaps: samples get lost; MIXED: see there), and what is exceeded."""
 
     delay: float
     pattern: str = FULL_RUN
@@ -39,6 +41,11 @@ class Group(NamedTuple):
     @property
     def inside(self) -> bool:
         return self.excess == Excess()
+
+    @property
+    def ages(self) -> tuple[float, ...]:
+        """Of u, v, r, psi, where a sample corrects its own time: shares of the greatest."""
+        return MIXED.get(self.pattern) or (self.delay,) * 4
 
 
 class AttackCase(NamedTuple):
@@ -57,6 +64,7 @@ OUTSIDE = tuple(
     for names in EXCESSES.values()
     for factor in FACTORS
 )
+MIXED_GROUPS = tuple(Group(1.0, pattern) for pattern in MIXED)  # Theorem 2 has them in all of its groups
 GROUPS = INSIDE + OUTSIDE
 CASES = (
     *(AttackCase(ship, rate) for ship in SHIPS for rate in RATES_HZ),
@@ -66,6 +74,11 @@ CASES = (
     AttackCase("usv", 50.0, 0),
     AttackCase("usv", 10.0, 0),
 )
+
+
+def groups_of(case: AttackCase) -> tuple[Group, ...]:
+    """All groups of a case."""
+    return GROUPS + (MIXED_GROUPS if certified_for(case)[1].inner > 1 else ())
 
 
 @cache

@@ -67,8 +67,8 @@ def random_orders(
     for i, group in enumerate(groups):
         of = slice(i * runs, (i + 1) * runs)
         grid = ages_of(c, group)
-        if c.inner > 1:  # each ship's samples are all of one age
-            age[:, :, of] = grid[-1]
+        if c.inner > 1:  # each row's samples are all of one age
+            age[:, :, of] = grid[-1] * np.array(group.ages)[:, None] / (group.delay or 1.0)
         else:
             age[:, :, of] = rng.choice(grid, (ticks, 4, runs))
     k = np.arange(n)

@@ -6,7 +6,7 @@ from typing import Any
 from bench import bench_output
 from bench.stability.attack.adversary_search import Attacked, CaseAttacked, attack
 from bench.stability.attack.attack_section import section
-from bench.stability.attack.cases import CASES
+from bench.stability.attack.cases import CASES, groups_of
 from bench.stability.attack.section import with_section
 from twin import whole
 from twin.errors import ThresholdError
@@ -17,7 +17,7 @@ def attacked(args: argparse.Namespace, runs: int) -> int:
     """All cases with about so many runs in all; ThresholdError when a bound was broken inside."""
     found = []
     for i, case in enumerate(CASES):
-        found.append(attack(case, round(runs / len(CASES)), args.seed + i))
+        found.append(attack(case, round(runs / len(CASES)), args.seed + i, groups_of(case)))
         bench_output.tell(_result_line(found[-1]))
     text = section(found, f"twin-bench stability --attack --runs {runs} --seed {args.seed}")
     result = {"schema_version": 1, "seed": args.seed, "cases": [as_table(x) for x in found]}
@@ -58,7 +58,8 @@ def _group(g: Attacked) -> dict[str, Any]:
         "samples": g.samples,
         "violations": g.violations,
         "of_tube": g.of_tube.tolist(),
-        "of_bound": g.of_bound.tolist() if g.full else None,
+        "of_bound": g.of_bound.tolist() if g.bound is not None else None,
+        "bound": g.bound,
         "by_pass": {name: ratio.tolist() for name, ratio in g.by_pass.items()},
         "first": g.first,
     }

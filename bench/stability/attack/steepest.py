@@ -72,10 +72,10 @@ def _oldest(
 
 
 def _rolled(w: Waters, was: RunBatch) -> Orders:
-    """As above where a sample takes its share of the error of its own time; each run's ages stay."""
+    """As above where a sample takes its share of the error of its own time; each row's ages stay."""
     o, steep, share = was.orders, AttackSlopes(w, was), w.c.K[0] * w.c.h
     force, noise = np.zeros_like(o.force), np.empty_like(o.noise)
-    age = np.minimum(o.age[0, 0], 1.0)
+    age = np.minimum(o.age[0], 1.0)
     mu = _target(o)
     noise[:] = o.noise
     for k in range(w.ticks - 1, -1, -1):

@@ -23,12 +23,19 @@ NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measureme
 Three = tuple[float, float, float]
 Rows = tuple[tuple[float, ...], ...]
 NO_PULL = (0.0, 0.0, 0.0)
+UNKNOWN: tuple[Three, float] = ((NOTHING, NOTHING, NOTHING), NOTHING)
 NONE = (False, False, False)
 
 
 def look_back(m: int) -> int:
     """Samples that a measurement of age m can still show."""
     return 2 * m + 1
+
+
+def halves(c: Certificate) -> Three:
+    """Half of the set's width of u, v, r [m/s, m/s, rad/s]: a bound that reaches it says nothing."""
+    (u0, u1), (v0, v1), (r0, r1) = (c.operating.ranges[name] for name in NU)
+    return 0.5 * (u1 - u0), 0.5 * (v1 - v0), 0.5 * (r1 - r0)
 
 
 class Highest:
@@ -76,9 +83,24 @@ class Tube:
         self._widest: Three = first  # greatest after of the window
         self._seas, self._acted = Highest(self.window), Highest(self.window)
         self._pulls: deque[Three] = deque(maxlen=self.window)
+        # what is known without counting measurements in, E of it, and its greatest of the window
+        self._known: tuple[Three, float] = (first, self.psi)
+        self._alone: tuple[Three, float] = self._known
+        self._alones = tuple([Highest(self.window, b) for b in first])
         # the highest in the window, and whether the learned force acted, for which the rows were made
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
+
+    def carried(self, pulled: Three, turned: float, since_s: float) -> tuple[Three, float]:
+        """What was `know`n (nu, psi) one step later, with no measurement counted: E of it, and what samples
+        `pulled` and `turned` the estimate by. Nothing in it looks back, but on bounds from before `since_s`
+        it does not rely."""
+        return add(self._alone[0], pulled), self._alone[1] + turned
+
+    def know(self, most: Three, psi: float) -> None:
+        """A bound of the estimate's error that holds now, whatever this tube says: the next step carries it,
+        and only that one."""
+        self._known = most, psi
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open. What a late measurement looks back on stays in the
@@ -89,8 +111,10 @@ class Tube:
         u, v, r = self.beta
         self._widest = first.raised(u), second.raised(v), third.raised(r)
         self._headings.raised(self.psi)
-        for before, b in zip(self._before, self.beta, strict=True):
+        for before, alone, b in zip(self._before, self._alones, self.beta, strict=True):
             before.raised(b)
+            alone.raised(b)
+        self._known = self.beta, self.psi
 
     def step(
         self,
@@ -118,10 +142,14 @@ class Tube:
         else:
             late = late or TABLE[-1]
             short, table, received, heading = 0.0, self._late_rows(late), NONE, False
-        beta, E = [], 0.0
+        beta, alone, E = [], [], 0.0
+        (known_u, known_v, known_r), known_psi = self._known
         for i, (v0, v1, v2, d, t, w0, w1, w2, again, d0, d1, d2, c) in enumerate(table):
             E = min(v0 * u + v1 * v + v2 * r + d + t * psi, NOTHING)
             widest = self._before[i].push(E)
+            by_itself = min(v0 * known_u + v1 * known_v + v2 * known_r + d + t * known_psi, NOTHING)
+            alone.append(by_itself)
+            self._alones[i].push(by_itself)
             if received[i]:
                 p = (
                     w0 * u
@@ -137,6 +165,8 @@ class Tube:
                 beta.append(min(p + short * K[i] * E, NOTHING))
             else:
                 beta.append(E)
+        turned_by = 0.5 * late * h * (known_r + alone[2]) + self._curve(late * h)
+        self._alone, self._known = ((alone[0], alone[1], alone[2]), known_psi + turned_by), UNKNOWN
         if self.certificate.estimated_heading:
             self._turn(E, late * h, short, heading, turned)
         if pulled is not NO_PULL or self._pulls:
@@ -149,7 +179,7 @@ class Tube:
     def _turn(self, E_r: float, h: float, short: float, heading: bool, turned: float) -> None:
         """The heading's bound: turned at the error of r, pulled by a measurement of it as the motion is."""
         c = self.certificate
-        curve = 0.25 * h * h * self.way[2]
+        curve = self._curve(h)
         E = min(self.psi + 0.5 * h * (self.beta[2] + E_r) + curve, NOTHING)
         if not heading:
             self.psi = E + turned
@@ -160,6 +190,10 @@ class Tube:
                 (1.0 - pull + short * c.K[2]) * E + again + pull * (1.0 + back * pull) * self.heading_noise
             )
         self._headings.push(self.psi)
+
+    def _curve(self, h: float) -> float:
+        """What a turning that is taken for even misses the heading by."""
+        return 0.25 * h * h * self.way[2]
 
     def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
         """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
@@ -177,6 +211,7 @@ class Tube:
         if self._sea == (H_s, float(acts)):
             return
         self._sea = H_s, float(acts)
+        self._halves = halves(self.certificate)
         c, step, one = self.certificate, self.certificate.step, self.periods.of(1)
         self._disturbance = (
             c.disturbance.at(H_s) if acts else add(c.disturbance.at(H_s), scaled_row(-1.0, c.saturation))
@@ -205,8 +240,14 @@ class Tube:
 
     @property
     def widest(self) -> Three:
-        """The greatest bound of the window that a measurement of greatest age looks back on."""
-        return self._widest
+        """The greatest bound before a correction of the window that a measurement of greatest age looks back
+        on: what a sample may be compared with is off by no more."""
+        (u, v, r), (first, second, third) = self._before, self._alones
+        return (
+            min(u.kept[0][1], first.kept[0][1]),
+            min(v.kept[0][1], second.kept[0][1]),
+            min(r.kept[0][1], third.kept[0][1]),
+        )
 
     def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
@@ -218,10 +259,12 @@ class Tube:
 
     def says_nothing(self) -> str | None:
         """In words, while the bound is as wide as the operating set itself; else None."""
-        ranges = self.certificate.operating.ranges
-        for name, b in zip(NU, self.beta, strict=True):
-            low, high = ranges[name]
-            if not b < 0.5 * (high - low):
+        u, v, r = self.beta
+        most_u, most_v, most_r = self._halves
+        if u < most_u and v < most_v and r < most_r:
+            return None
+        for name, b, half in zip(NU, self.beta, self._halves, strict=True):
+            if not b < half:
                 wide = f"the bound of {WORDS[name]} is as wide as the operating set"
                 return f"{wide}, width = ± {in_unit(name, b)}"
         return None

@@ -5,7 +5,12 @@
     a sample of axis i:      x_i <= (1 - a) x_i + a n_i
     G = (1 - a) M^q,   b = (I - G)^-1 (sum_k<q M^k d + a M^q n)      all axes sampled together, each h
 
-b bounds the published estimate, which is up to h after its samples. The proof is in docs/stability.md.
+b bounds the published estimate, which is up to h after its samples.
+
+    samples of each axis at times of its own, at most L apart and at most L old, k = q L/h:
+    G' = (1 - a) I + k (M - I),   b' = (I - G')^-1 (a n + k d)
+
+The proofs are in docs/stability.md.
 """
 
 from collections.abc import Callable, Sequence
@@ -96,6 +101,20 @@ def assess_rolled(
     decay = -log(radius(G)) / plant.h
     widths, matrix = cast(Row, bound[:3]), cast(Any, G)
     return Promise(True, reason, 1.0 - worst, decay, widths, by_force, by_noise, matrix, push, calm, usual)
+
+
+def bound_at_any_ages(
+    plant: Plant, K: Row, q: int, noise: Row, d: Row, heading_noise: float, spans: float = 1.0
+) -> Vector | None:
+    """b' of (u, v, r, psi) under the force d [N, N, N m], where no sample of an axis is older than `spans`
+    periods, nor taken longer after the one before; None: the step of the proof gives none."""
+    step, a, k = InnerStep(inner(plant, q)), plant.h * K[0], q * spans
+    G = tuple(tuple((1.0 - a - k) * (i == j) + k * step.M[i][j] for j in FOUR) for i in FOUR)
+    end, pushes = settled(G), step.pushes(d, way(plant, d)[2])
+    if end is None:
+        return None
+    n = (*noise, heading_noise)
+    return apply4(end, tuple(a * x + k * y for x, y in zip(n, pushes, strict=True)))
 
 
 def plant_turns(plant: Plant, force: Row) -> float:

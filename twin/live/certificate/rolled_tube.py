@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
-from twin.live.certificate.observer_tube import NOTHING, Three, Tube
+from twin.live.certificate.observer_tube import NOTHING, UNKNOWN, Three, Tube, halves
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.observer.operating import NU, outside_in_words
@@ -22,11 +22,13 @@ PSI = 2  # place of the heading among the observer's states; u, v, r follow
 
 
 class Node(NamedTuple):
-    """A moment of the estimate (u, v, r, psi) and the bound of its error."""
+    """A moment of the estimate (u, v, r, psi) and the bound of its error, and that before what was corrected
+    there."""
 
     time_s: float
     bound: Four
     estimate: Four
+    before: Four
 
 
 class RolledTube(Tube):
@@ -46,53 +48,70 @@ class RolledTube(Tube):
         self._share = certificate.K[0] * certificate.h
         self._limits = [certificate.operating.ranges[name] for name in NU]
         self._nodes: deque[Node] = deque()
+        self._from_s = float("-inf")  # from where the last path went
         self._left: str | None = None  # what left the set on the way, or may have
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
 
     @property
     def widest(self) -> Three:
-        """The greatest bound of the kept time."""
-        kept = [node.bound for node in self._nodes] or [(*self.beta, self.psi)]
+        """The greatest bound before a correction of the kept time."""
+        kept = [node.before for node in self._nodes] or [(*self.beta, self.psi)]
         return max(x[0] for x in kept), max(x[1] for x in kept), max(x[2] for x in kept)
+
+    def carried(self, pulled: Three, turned: float, since_s: float) -> tuple[Three, float]:
+        """The bound as it is, for a sample corrects its own time and nothing looks back, if the path began
+        no earlier than `since_s`; else one that says nothing."""
+        if self._from_s < since_s:
+            return UNKNOWN
+        return self.beta, self.psi
+
+    def know(self, most: Three, psi: float) -> None:
+        """Of this and what the tube says the lesser holds, row by row, and the next way begins at it. A
+        sample takes away so much of an error that only in yaw, and where samples are seldom, there is much
+        between them."""
+        u, v, r = self.beta
+        self.beta = min(u, most[0]), min(v, most[1]), min(r, most[2])
+        self.psi = min(self.psi, psi)
+        if self._nodes:
+            self._nodes[-1] = self._nodes[-1]._replace(bound=(*self.beta, self.psi))
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open; before now it was at most its way from there."""
+        if start == self.beta and psi == self.psi:
+            return  # the way to it is known better than that
         self.beta = self.noise if start is None else start
         self.psi = self.heading_noise if psi is None else psi
         if not self._nodes:
             return
         bound, last = (*self.beta, self.psi), self._nodes[-1]
         way = (*self.way, max(map(abs, self._limits[2])))
-        self._nodes = deque(
-            Node(
-                node.time_s,
-                tuple(  # type: ignore[arg-type]
-                    b + abs(then - now) + w * (last.time_s - node.time_s)
-                    for b, then, now, w in zip(bound, node.estimate, last.estimate, way, strict=True)
-                ),
-                node.estimate,
+        old, self._nodes = self._nodes, deque()
+        for node in old:
+            at: Four = tuple(  # type: ignore[assignment]
+                b + abs(then - now) + w * (last.time_s - node.time_s)
+                for b, then, now, w in zip(bound, node.estimate, last.estimate, way, strict=True)
             )
-            for node in self._nodes
-        )
+            self._nodes.append(Node(node.time_s, at, node.estimate, at))
 
     def follow(self, path: Path, H_s: float = 0.0, acts: bool = True) -> Three:
         """The bound at the end of that path."""
         self._look(H_s, acts)
-        nodes, self._left = self._nodes, None
+        nodes, self._left, self._from_s = self._nodes, None, path.start_s
         while nodes and nodes[-1].time_s > path.start_s:
             nodes.pop()
         x = nodes[-1].bound if nodes else (*self.beta, self.psi)
         if not nodes:  # a new start
-            nodes.append(Node(path.start_s, x, of_state(path.start)))
+            nodes.append(Node(path.start_s, x, of_state(path.start), x))
         for time_s, motions, pulls, after in path.stretches:
             for motion in motions:
                 self._left = self._left or self._outside(motion, x)
                 x = self._on(x)
+            before = x
             for state, full, moved in pulls:
                 if state >= PSI:
                     x = self._pulled(x, 3 if state == PSI else state - 3, full, moved)
-            nodes.append(Node(time_s, x, of_state(after)))
+            nodes.append(Node(time_s, x, of_state(after), before))
         while len(nodes) > 1 and nodes[1].time_s <= nodes[-1].time_s - KEPT_S:
             nodes.popleft()
         self.beta, self.psi = x[:3], x[3]
@@ -129,6 +148,7 @@ class RolledTube(Tube):
         if self._sea == (H_s, float(acts)):
             return
         self._sea = H_s, float(acts)
+        self._halves = halves(self.certificate)
         c = self.certificate
         force = c.disturbance.at(H_s)
         if not acts:

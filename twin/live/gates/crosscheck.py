@@ -13,7 +13,8 @@ own. A text never holds a number, so that it can be counted.
 from collections.abc import Iterator
 from math import cos, hypot, sin
 
-from twin.live.gates.cusum import Cusum
+from twin.live.gates.cusum import SLOWLY, Cusum
+from twin.live.gates.hole import is_hole
 from twin.live.gates.lacking import FAST, SLOW, CorrectedTick, Lacking
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
@@ -23,15 +24,15 @@ POSITIONS = "positions against speed over ground and heading: they walk apart"
 CURRENT = "speed over ground against speed through water: they part faster than a current changes"
 COMPASS = "heading_true_north_deg against yaw_rate_degps: the heading does not turn as the gyro says"
 WAY_S, STREAM_S, TURN_S = 10.0, 10.0, 4.0  # blocks
-GAP_S = 1.0  # a longer hole ends a block
 
 
 class CrossChecks:
     """Fed with every tick; `reasons` are the disagreements of now, in words that stay the same, `doubt` the
     first of them."""
 
-    def __init__(self, ship: Ship):
-        U, T = ship.U_0, ship.L_pp / ship.U_0
+    def __init__(self, ship: Ship, period_s: float = 0.1):
+        """period_s: of the loop; a hole in its ticks ends every block."""
+        U, T, self._period_s = ship.U_0, ship.L_pp / ship.U_0, period_s
         self._way = Way(U)
         self._stream = Stream(U)
         self._heading = Heading(T)
@@ -47,7 +48,7 @@ class CrossChecks:
     def feed(self, now: CorrectedTick) -> None:
         """One tick."""
         measured, dt = now.measured, now.dt
-        if not 0.0 < dt <= GAP_S:
+        if is_hole(dt, self._period_s):
             for check in (self._way, self._stream, self._heading, *self._lacking):
                 check.pause()
             return
@@ -141,6 +142,7 @@ class Stream:
     def __init__(self, U_0: float):
         self._tests = Cusum(0.015 * U_0 + 0.02, 0.0), Cusum(0.015 * U_0 + 0.02, 0.0)
         self._current: list[float] | None = None  # north, east
+        self._unsuspected = (0.0, 0.0)  # the same when last nothing was suspicious
         self._blocks = 0
         self._sums = [0.0] * 4
         self._since_s = 0.0
@@ -178,23 +180,33 @@ class Stream:
         c, s = c / size, s / size
         if self._current is None:
             self._current = [ahead * c - aside * s, ahead * s + aside * c]
+            self._unsuspected = self._current[0], self._current[1]
         now = self._current
         off = ahead - (now[0] * c + now[1] * s), (aside - (now[1] * c - now[0] * s)) if both else 0.0
-        alarms = [test.feed(x) for test, x in zip(self._tests, off, strict=True)]
+        before = self.alarm
+        for test, x in zip(self._tests, off, strict=True):
+            test.feed(x)
         self._blocks += 1
-        a = (0.1 if any(alarms) else 1.0) / min(self._blocks, self.REMEMBERS)
-        now[0] += a * (off[0] * c - off[1] * s)
-        now[1] += a * (off[0] * s + off[1] * c)
+        if self.alarm and not before:  # what taught since it became suspicious is taken back
+            now[:] = self._unsuspected
+        a = (SLOWLY if self.alarm else 1.0) / min(self._blocks, self.REMEMBERS)
+        ahead, aside = (test.usual(x) for test, x in zip(self._tests, off, strict=True))
+        now[0] += a * (ahead * c - aside * s)
+        now[1] += a * (ahead * s + aside * c)
+        if all(test.calm for test in self._tests):
+            self._unsuspected = now[0], now[1]
 
 
 class Heading:
-    """The turning of the heading against the gyro, whose constant error is learned."""
+    """The turning of the heading against the gyro, whose constant error is learned. Between two samples of
+    the gyro the rate of turn may have been anything between them: half their difference counts for
+    nothing."""
 
     def __init__(self, T: float):
         self._test = Cusum(3e-4, 6e-4)  # rad/s
         self._start: tuple[float, float] | None = None
-        self._turned = 0.0
-        self._r: float | None = None
+        self._turned = self._unseen = 0.0  # by the gyro; how far that may be off between its samples [rad]
+        self._rate: tuple[float, float] | None = None  # the gyro's last sample, and when
 
     @property
     def alarm(self) -> bool:
@@ -203,7 +215,7 @@ class Heading:
 
     def pause(self) -> None:
         """The measurements have a hole: begin a new stretch."""
-        self._start = self._r = None
+        self._start = self._rate = None
 
     def feed(self, measured: Measured, dt: float) -> None:
         """One tick, `dt` [s] after the last."""
@@ -211,15 +223,18 @@ class Heading:
         if not measured.has("psi", "r") or "r" in measured.derived or "psi" in measured.derived:
             self.pause()
             return
-        r = si["r"]
-        self._turned += 0.5 * (r + (r if self._r is None else self._r)) * dt
-        self._r = r
+        r, t = si["r"], measured.time["r"]
+        before, before_s = self._rate or (r, t)
+        self._turned += 0.5 * (r + before) * (t - before_s)
+        self._unseen += 0.5 * abs(r - before) * (t - before_s)
+        self._rate = r, t
         if "psi" not in measured.fresh:
             return
-        over, t = r * measured.age_s("psi"), measured.time["psi"]
+        over, t = r * (t - measured.time["psi"]), measured.time["psi"]
         if self._start is not None:
             span_s = t - self._start[1]
             if span_s < TURN_S:
                 return
-            self._test.feed(turn(si["psi"] - self._start[0] - self._turned + over) / span_s)
-        self._start, self._turned = (si["psi"], t), over
+            off = turn(si["psi"] - self._start[0] - self._turned + over)
+            self._test.feed(off / span_s, self._unseen / span_s)
+        self._start, self._turned, self._unseen = (si["psi"], t), over, 0.0

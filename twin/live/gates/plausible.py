@@ -10,6 +10,7 @@ asks whether they agree."""
 from collections.abc import Sequence
 from math import copysign, sqrt
 
+from twin.live.gates.hole import is_hole
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
@@ -58,9 +59,10 @@ class Pair:
 class Plausibility:
     """Watches the pairs; `reasons()` says what cannot be true."""
 
-    def __init__(self, ship: Ship):
+    def __init__(self, ship: Ship, period_s: float = 0.1):
+        """period_s: of the loop; no way is measured across a hole in its ticks."""
         T = ship.L_pp / ship.U_0
-        self.time_s = T
+        self.time_s, self._period_s = T, period_s
         self.over_s = max(0.2 * T, LEAST_S)
         self._turn = Pair(max(2.0 * T, 10.0 * LEAST_S), 0.02 / T)
         self._speed = Pair(max(2.0 * T, 10.0 * LEAST_S), 0.15 * ship.U_0)
@@ -70,7 +72,7 @@ class Plausibility:
 
     def feed(self, measured: Measured, dt: float) -> None:
         """One tick's measurements."""
-        if not 0.0 < dt < 1.0 or measured.steps:
+        if is_hole(dt, self._period_s) or measured.steps:
             self._last.clear()  # no way is measured across a hole or a step
             return
         si = measured.si
