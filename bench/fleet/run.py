@@ -4,7 +4,6 @@ figures, `fit` the decision."""
 
 import argparse
 import json
-import os
 import sys
 import time
 import traceback
@@ -12,12 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
-
-from bench.fleet.hull_families import FAMILIES  # noqa: E402
-from bench.fleet.voyage_plan import VOYAGES  # noqa: E402
-from twin.study.fleet.spread import spread  # noqa: E402
+from bench.fleet.hull_families import FAMILIES
+from bench.fleet.voyage_plan import VOYAGES
+from twin.study.fleet.spread import spread
 
 ROWS = "rows.jsonl"
 
