@@ -2,7 +2,7 @@
 remains."""
 
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -17,6 +17,7 @@ from twin.physics.ship import load
 from twin.recording.write import write_voyage
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.usual import significantly_there
+from twin.study.estimation.innovations import NoiseModel
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,7 @@ def test_the_ship_file_carries_standard_errors_and_what_remains(calibrated):
     structural = ship.notes["structural"]
     size = len(structural["labels"])
     assert len(structural["offset"]) == size and len(structural["covariance"]) == size
-    assert set(structural["floor"]) == {"share", "calm", "white", "flow", "sensor", "wander", "doubt"}
+    assert set(structural["floor"]) == {f.name for f in fields(NoiseModel)}
     assert structural["by_regime"] and said["floor"]["share"]
 
 
