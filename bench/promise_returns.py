@@ -65,7 +65,7 @@ class Returned(NamedTuple):
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--hull", action="append", choices=HULLS, help="only this hull (repeat)")
     parser.add_argument(
-        "--seconds", type=float, default=900.0, metavar="S", help="of a healthy voyage (default: 900)"
+        "--seconds", type=_judged, default=900.0, metavar="S", help="of a healthy voyage (default: 900)"
     )
     parser.add_argument("--no-lies", action="store_true", help="healthy voyages only")
     bench_output.add_arguments(parser)
@@ -77,6 +77,20 @@ def run(args: argparse.Namespace) -> int:
     result = {"healthy": [r._asdict() for r in healthy], "lies": [r._asdict() for r in back]}
     bench_output.give(args, result, page(healthy, back), bench_output.kept(args.page))
     return 0
+
+
+def _judged(text: str) -> float:
+    """Seconds of a voyage of which more is judged than the first that are left out."""
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = float("nan")
+    if not 2.0 * LEFT_OUT_S <= seconds < float("inf"):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no length of a voyage: give {LEFT_OUT_S * 2.0:.0f} s or more, "
+            f"of which the first {LEFT_OUT_S:.0f} are left out"
+        )
+    return seconds
 
 
 def withdrawn(hull: str, seconds: float) -> Iterator[Withdrawn]:
