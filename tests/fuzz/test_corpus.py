@@ -7,6 +7,7 @@ import pytest
 from bench.fuzz.aboard import FuzzedVoyage, LoopTarget, Watched
 from bench.fuzz.run import read
 from bench.fuzz.targets import TARGETS
+from twin.live.left_open import LeftOpen
 
 CORPUS = Path(__file__).parent / "corpus"
 AT_MOST = 120  # inputs of a target: the suite has other things to do
@@ -55,25 +56,14 @@ def test_the_corpus_sails_through_pauses_set_clocks_and_silence_with_a_promise_i
     assert {"hybrid", "dead reckoning"} <= {mode for _, mode in fates}
 
 
-def test_a_loop_that_forgets_to_clear_what_it_had_received_is_found(made):
-    """Test: the fault of November 2026 (a pause over 3 s with a certificate), planted again. Expected: a
-    plain pause in the corpus finds it."""
+def test_a_loop_that_takes_a_sample_for_the_truth_is_found(made, monkeypatch):
+    """Test: what a sample leaves open loses the instrument's noise and its age. Expected: a seed finds the
+    promise that is not kept."""
     target = made("loop")
-    begin = type(target.loop.observer)._begin
-
-    def forgetful(observer, *arguments):
-        before = dict(observer.received)
-        begin(observer, *arguments)
-        observer.received.update(dict.fromkeys(before, True))
-        observer.innovation.clear()
-
-    type(target.loop.observer)._begin = forgetful
-    try:
-        with pytest.raises((KeyError, Watched)):
-            for data in TARGETS["loop"].seeds():
-                target.one(data)
-    finally:
-        type(target.loop.observer)._begin = begin
+    monkeypatch.setattr(LeftOpen, "bounds", property(lambda _: ((0.0, 0.0, 0.0), 0.0)))
+    with pytest.raises(Watched, match="a promise that is not kept"):
+        for data in TARGETS["loop"].seeds():
+            target.one(data)
 
 
 def test_what_libfuzzer_says_is_read():
