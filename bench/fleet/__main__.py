@@ -1,9 +1,9 @@
-"""`python -m bench.fleet VERB`: run, table, fit, keep."""
+"""`python -m bench.fleet VERB`: run, table, fit, keep, peer, prior."""
 
 import argparse
 import sys
 
-from bench.fleet import decision_fit, fleet_page, keep_answers
+from bench.fleet import decision_fit, fleet_page, keep_answers, prior_fit, sparse_peer
 from bench.fleet import run as verb_run
 
 
@@ -12,7 +12,14 @@ def main() -> int:
         prog="python -m bench.fleet", description="Random ships of many forms, asked."
     )
     verbs = parser.add_subparsers(dest="verb", required=True)
-    each = {"run": verb_run, "table": fleet_page, "fit": decision_fit, "keep": keep_answers}
+    each = {
+        "run": verb_run,
+        "table": fleet_page,
+        "fit": decision_fit,
+        "keep": keep_answers,
+        "peer": sparse_peer,
+        "prior": prior_fit,
+    }
     for name, module in each.items():
         module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))
     args = parser.parse_args()

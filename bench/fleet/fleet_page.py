@@ -178,7 +178,8 @@ SHORT = {
 }
 
 
-def _short(s: Share) -> str:
+def in_short(s: Share) -> str:
+    """k/n; a dash where nothing was asked."""
     return f"{s.k}/{s.n}" if s.n else "-"
 
 
@@ -187,7 +188,7 @@ def _families(rows: Sequence[Row]) -> list[str]:
     for family in sorted({r["family"] for r in rows}):
         own = [r for r in rows if r["family"] == family]
         told, ships = figures(own), len({r["seed"] for r in own})
-        body.append([family, ships, *(_short(told[name]) for name in SHORT.values())])
+        body.append([family, ships, *(in_short(told[name]) for name in SHORT.values())])
     return lines("By family", "", ("family", "ships", *SHORT), body)
 
 
@@ -199,7 +200,7 @@ def _effects(rows: Sequence[Row]) -> list[str]:
         marks = share([answer_score.right(r) for r in own])
         gain = share([answer_score.right(r) for r in own if answer_score.gains(r)])
         said = Counter(_said(r) for r in own if not answer_score.right(r)).most_common(5)
-        body.append((name, _short(marks), _short(gain), ", ".join(f"{w} {k}" for w, k in said)))
+        body.append((name, in_short(marks), in_short(gain), ", ".join(f"{w} {k}" for w, k in said)))
     head = ("hidden alone", "right", "right where its oracle gains 10 %", "said otherwise")
     return lines("By effect", "", head, body)
 

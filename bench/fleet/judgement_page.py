@@ -6,8 +6,9 @@ from typing import Any
 
 from bench.fleet import answer_score, decision_fit, probability_fit
 from bench.fleet.answer_score import Row, share
-from bench.fleet.fleet_page import FIGURES, decided, figures, lines, page
+from bench.fleet.fleet_page import FIGURES, SHORT, decided, figures, in_short, lines, page
 from bench.fleet.kept_rows import of_batch, together
+from bench.fleet.voyage_plan import practice
 
 STRICTER = (5.0, 6.0, 7.0, 8.0)  # SIGNIFICANT, from the one that stands
 
@@ -20,7 +21,12 @@ def judgement(rows: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
     out = [page(first, {"page": decision_fit.fitted_lines(fitted)}).rstrip("\n")]
     return (
         "\n".join(
-            [*out, *_second(of_batch(rows, "blind"), both, len(of_batch(rows, "again"))), *_all(both, fit)]
+            [
+                *out,
+                *_second(of_batch(rows, "blind"), both, len(of_batch(rows, "again"))),
+                *_practices([decided(r) for r in both]),
+                *_all(both, fit),
+            ]
         )
         + "\n"
     )
@@ -42,6 +48,25 @@ def _second(blind: Sequence[Row], both: Sequence[Row], again: int) -> list[str]:
     )
     head = ("", "goal", f"second batch, blind ({len(blind)})", f"both, latest answer ({len(both)})")
     return lines("The second batch", text, head, body)
+
+
+def _practices(rows: Sequence[Row]) -> list[str]:
+    """The figures by how many reference voyages the ship had, and how they were chosen."""
+    ships = {(r["family"], r["seed"]): practice(r["family"], r["seed"])[:2] for r in rows}
+    body = []
+    for which in sorted(set(ships.values())):
+        own = [r for r in rows if ships[r["family"], r["seed"]] == which]
+        of = figures(own)
+        body.append(
+            (
+                which[0],
+                "calm days chosen" if which[1] else "days as they come",
+                sum(x == which for x in ships.values()),
+                *(in_short(of[name]) for name in SHORT.values()),
+            )
+        )
+    text = "All voyages of both batches with the latest of their answers, by the practice of the owner."
+    return lines("By reference voyages", text, ("references", "of", "ships", *SHORT), body)
 
 
 def _intervals(rows: Sequence[Row]) -> answer_score.Share:
