@@ -73,3 +73,21 @@ def test_answers_of_the_fleet_that_are_read_and_written_again_are_the_same(tmp_p
         "TowForce",
         "VaryingCurrent",
     )
+
+
+def test_an_answer_asked_anew_is_the_last_to_its_voyage_and_all_others_stay(tmp_path):
+    """Test: one voyage of the first batch, answered by nothing missing. Expected: one line more, or one other;
+    the rest is the same to the letter, and a voyage that is not kept is left out."""
+    table, facts = tmp_path / "fleet.csv", tmp_path / "facts.jsonl"
+    table.write_text(keep_answers.TABLE.read_text())
+    facts.write_text(keep_answers.FACTS.read_text())
+    asked = next(row for row in ANSWERS if row["asked"] == "first" and row["verdict"] == "missing")
+    anew = {**asked, "verdict": "nothing_missing", "reason": "nothing", "missing": []}
+    kept_rows.write_anew([anew, {**anew, "key": "mmg-99-0"}], table, facts)
+    rows = kept_rows.read(table, facts)
+    latest = {row["key"]: row for row in kept_rows.together(rows)}
+    assert latest[asked["key"]]["verdict"] == "nothing_missing" and "mmg-99-0" not in latest
+    of_it = {line for line in table.read_text().splitlines() if line.startswith(f"{asked['key']},again")}
+    assert len(of_it) == 1
+    before = set(keep_answers.TABLE.read_text().splitlines())
+    assert set(table.read_text().splitlines()) - before == of_it

@@ -104,12 +104,30 @@ def _sizes(row: Row) -> dict[str, str]:
 
 def write(answers: Sequence[tuple[Row, str]], table: Path, facts: Path) -> None:
     """Both files of these answers and when each was asked (TIMES)."""
+    _put([(line(row, asked), _facts_line(row)) for row, asked in answers], table, facts)
+
+
+def write_anew(rows: Sequence[Row], table: Path, facts: Path) -> None:
+    """Both files with these answers as the last to their voyages; voyages that are not kept are left out."""
+    with table.open(newline="") as file:
+        known = zip(csv.DictReader(file), facts.read_text().splitlines(), strict=True)
+        kept = {(of["voyage"], of["asked"]): (of, told) for of, told in known}
+    for row in rows:
+        if {(row["key"], "first"), (row["key"], "blind")} & set(kept):
+            kept[row["key"], "again"] = line(row, "again"), _facts_line(row)
+    _put(sorted(kept.values(), key=lambda of: list(TIMES).index(of[0]["asked"])), table, facts)
+
+
+def _put(kept: Sequence[tuple[Mapping[str, str], str]], table: Path, facts: Path) -> None:
     with table.open("w", newline="") as file:
         out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         out.writeheader()
-        out.writerows(line(row, asked) for row, asked in answers)
-    lines = (json.dumps(_shortened(digits(row["facts"])), separators=(",", ":")) for row, _ in answers)
-    facts.write_text("".join(f"{one}\n" for one in lines))
+        out.writerows(of for of, _ in kept)
+    facts.write_text("".join(f"{told}\n" for _, told in kept))
+
+
+def _facts_line(row: Row) -> str:
+    return json.dumps(_shortened(digits(row["facts"])), separators=(",", ":"))
 
 
 def _none(kind: type) -> dict[str, Any]:

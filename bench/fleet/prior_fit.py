@@ -21,6 +21,7 @@ from twin.study.estimation.form import TERMS
 
 OF_FORM = "form."
 ROUNDS = 200  # of the iteration; it has settled to three digits after a hundred
+LEAST_TOLD = 1e-2  # information, of the prior's, from which a direction counts as seen
 WIDTHS = np.array(list(TERMS.values()))
 
 
@@ -58,11 +59,12 @@ def of_ship(path: Path) -> Likelihood:
     kept: Mapping[str, Sequence[float]] = ship.notes["structural"]
     place = {label: i for i, label in enumerate(kept["labels"])}
     at = [place[OF_FORM + name] for name in TERMS]
-    P = np.array(kept["covariance"])[np.ix_(at, at)]
-    inverse = np.linalg.inv(P)
-    return Likelihood(
-        path.stem.rpartition("-")[0], inverse - np.diag(WIDTHS**-2), inverse @ np.array(kept["offset"])[at]
-    )
+    P = np.array(kept["covariance"])[np.ix_(at, at)] / np.outer(WIDTHS, WIDTHS)
+    told, V = np.linalg.eigh(np.linalg.inv(P) - np.eye(len(at)))  # of widths that stand
+    told, V = told[told > LEAST_TOLD], V[:, told > LEAST_TOLD]
+    mean = np.array(kept["offset"])[at] / WIDTHS
+    A, b = (V * told) @ V.T, V @ ((told + 1.0) * (V.T @ mean))
+    return Likelihood(path.stem.rpartition("-")[0], A / np.outer(WIDTHS, WIDTHS), b / WIDTHS)
 
 
 def learned(ships: Sequence[Likelihood]) -> np.ndarray:
