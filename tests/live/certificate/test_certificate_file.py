@@ -32,7 +32,7 @@ def test_text_that_is_no_certificate_is_one_of_three_errors(text):
         Certificate.from_json(text)
 
 
-@pytest.mark.parametrize("value", [10**400, [], "x", None, 0, -1.0, float("nan"), float("inf"), {}])
+@pytest.mark.parametrize("value", [10**400, 1e200, [], "x", None, 0, -1.0, float("nan"), float("inf"), {}])
 @pytest.mark.parametrize("place", ["inertia", "lo", "h", "K", "calm", "operating"])
 def test_a_number_that_is_none_is_refused_though_its_checksum_fits(true, place, value):
     """Test: one entry of a true file replaced, its checksum made anew. Expected: no other error than the
