@@ -47,3 +47,23 @@ def test_a_number_that_is_none_is_refused_though_its_checksum_fits(true, place, 
         holder[place] = value
     with pytest.raises((ValueError, KeyError, TypeError)):
         Certificate.from_json(text_of(table))
+
+
+@pytest.mark.parametrize("axis", ["u", "v", "r", "wind_speed"])
+@pytest.mark.parametrize(
+    "value", [0, "x", [], [1.0], [2.0, 1.0], [float("nan"), 1.0], [0.0, float("inf")], None]
+)
+def test_a_range_of_the_operating_set_that_is_none_is_refused(true, axis, value):
+    """Expected: the same; what is not looked at by the theorem would end the service at its first tick (found
+    by the fuzzer)."""
+    table = json.loads(json.dumps(true))
+    table["plant"]["operating"]["ranges"][axis] = value
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        Certificate.from_json(text_of(table))
+
+
+def test_an_operating_set_without_a_motion_is_refused(true):
+    table = json.loads(json.dumps(true))
+    del table["plant"]["operating"]["ranges"]["v"]
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        Certificate.from_json(text_of(table))
