@@ -62,6 +62,23 @@ def test_a_range_of_the_operating_set_that_is_none_is_refused(true, axis, value)
         Certificate.from_json(text_of(table))
 
 
+@pytest.mark.parametrize("place", [("disturbance", "motion"), ("disturbance", "per_metre"), ("saturation",)])
+@pytest.mark.parametrize("value", ["x", None, [], -1e-6, float("nan"), float("inf")])
+def test_what_only_a_sea_or_a_learned_force_asks_for_is_looked_at_too(true, place, value):
+    """Expected: the same of a bound that no theorem in calm water meets; a negative one would promise less
+    than is there."""
+    table = json.loads(json.dumps(true))
+    holder = table
+    for name in place:
+        holder = holder[name]
+    holder[1] = value
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        Certificate.from_json(text_of(table))
+    del holder[1]
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        Certificate.from_json(text_of(table))
+
+
 def test_an_operating_set_without_a_motion_is_refused(true):
     table = json.loads(json.dumps(true))
     del table["plant"]["operating"]["ranges"]["v"]

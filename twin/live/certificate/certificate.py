@@ -165,7 +165,8 @@ class Certificate(Promise):
         disturbance that stand beside it."""
         again = self._again(self.noise, self.disturbance, self.heading_noise)
         positive = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h))
-        noisy = all(isfinite(x) and x >= 0.0 for x in (*self.noise, self.heading_noise))
+        bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
+        noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
         told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
         return positive and noisy and self.operating.whole and all(told)
 
