@@ -8,7 +8,7 @@ set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
 folder="${1:?usage: wheels.sh FOLDER}"
 python="${PYTHON:-python3}"
-lock="${LOCK:-$here/requirements.lock}"
+lock="${LOCK:-$("$here/which-lock.sh" "$python")}"
 mkdir -p "$folder"
 [ -z "$(ls -A "$folder")" ] || { echo "$folder is not empty" >&2; exit 1; }
 if [ -n "${PLATFORM:-}" ]; then other="--platform $PLATFORM --only-binary=:all:"; else other=""; fi

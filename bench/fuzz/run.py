@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     rows = []
     for name in names:
         seconds = max(round(args.seconds * SHARES.get(name, 1.0) / whole_share), 1)
-        tried = told(name, args.corpus)
+        tried = known(name, args.corpus)
         if tried is None or not args.inputs or tried.inputs < args.inputs:
             bench_output.tell(f"{name}, {seconds} s")
             left = args.inputs - (tried.inputs if tried else 0) if args.inputs else None
@@ -68,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     return 3 if any(row.broken for row in rows) else 0
 
 
-def told(name: str, corpus: Path) -> Fuzzing | None:
+def known(name: str, corpus: Path) -> Fuzzing | None:
     """What earlier runs on these inputs made of a target; None: there was none."""
     file = corpus / f"{name}.tried.json"
     return Fuzzing(**json.loads(file.read_text())) if file.exists() else None

@@ -24,7 +24,11 @@ LOOP = (f"{LIVE}/test_stabilizer.py", f"{LIVE}/test_pause.py", f"{LIVE}/test_ass
 LOG, GATES = f"{LIVE}/log", f"{LIVE}/gates"
 SAILED = (f"{LIVE}/test_promise_returns.py", f"{LIVE}/test_assumptions.py", f"{LIVE}/test_lost_controls.py")
 PARTS = {  # the files of a part, by folder, and all tests that may notice
-    "guard": ("twin/live", ("guard",), (f"{LIVE}/test_guard.py", f"{LIVE}/test_loop.py")),
+    "guard": (
+        "twin/live",
+        ("guard",),
+        (f"{LIVE}/test_guard_ladder.py", f"{LIVE}/test_guard.py", f"{LIVE}/test_loop.py"),
+    ),
     "gates": (
         "twin/live/gates",
         (
@@ -36,7 +40,13 @@ PARTS = {  # the files of a part, by folder, and all tests that may notice
     "stabilizer": (
         "twin/live",
         ("stabilizer", "left_open", "contradiction", "parity", "tube_kept", "seen"),
-        (*LOOP, *SAILED[::2], f"{LIVE}/test_guard.py", f"{LIVE}/test_boat_in_waves.py", GATES),
+        (
+            *LOOP,
+            *SAILED[::2],
+            f"{LIVE}/test_guard.py",
+            f"{LIVE}/test_boat_in_waves.py",
+            f"{GATES}/test_crosscheck.py",
+        ),
     ),
     "recorder": (
         "twin/live/log",
