@@ -209,6 +209,7 @@ def test_the_edges_of_the_algebra():
     assert c3.inverse(c3.scaled(0.0, c3.IDENTITY)) is None
     assert c3.radius(c3.diagonal((NEVER, 0.0, 0.0))) == NEVER
     assert c3.radius(((0.0, 1e200, 0.0), (1e200, 0.0, 0.0), (0.0, 0.0, 0.0))) == NEVER  # its minors overflow
+    assert c3.radius(((1e308, 1e308, 0.0), (0.0, 1e308, 0.0), (0.0, 0.0, 0.0))) >= 1e308
     for i in range(3):  # each minor by itself
         one = c3.diagonal(tuple(1.5 if j == i else 0.1 for j in range(3)))
         assert not c3.contracts(one) and c3.radius(one) == pytest.approx(1.5)

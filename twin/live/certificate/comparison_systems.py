@@ -93,6 +93,8 @@ def radius(a: Matrix) -> float:
         low, high = high, 2.0 * high
     while high - low > 1e-12 * high:
         middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
         low, high = (low, middle) if contracts(a, middle) else (middle, high)
     return high
 
