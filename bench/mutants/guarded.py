@@ -41,6 +41,7 @@ PARTS = {  # the files of a part, by folder, and all tests that may notice
         "twin/live",
         ("stabilizer", "left_open", "contradiction", "parity", "tube_kept", "seen"),
         (
+            f"{LIVE}/test_contradiction_by_hand.py",
             *LOOP,
             *SAILED[::2],
             f"{LIVE}/test_guard.py",
