@@ -83,7 +83,7 @@ def reached(root: Path, files: Sequence[str], tests: Sequence[str], kept: Path) 
     return [Reached(*row) for row in json.loads(kept.read_text())]
 
 
-def tests_of(found: Sequence[Reached], file: str, source: str, line: int, budget_s: float) -> list[str]:
+def reaching(found: Sequence[Reached], file: str, source: str, line: int, budget_s: float) -> list[str]:
     """The tests that come to the function of a line, those that come to the line itself first and the
     quickest of them first, for so long together; of a line outside of functions all that come to the file."""
     begin, end = _around(ast.parse(source), line)

@@ -20,9 +20,10 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from bench import bench_output
+from bench.fleet.answer_score import Share
 from bench.mutants.guarded import GUARDED, PARTS, Guarded
 from bench.mutants.mutate import Mutant, mutants
-from bench.mutants.reach import reached, tests_of
+from bench.mutants.reach import reached, reaching
 
 ROOT = Path(__file__).parents[2]
 KILLED, SURVIVED, HUNG = "killed", "survived", "hung"
@@ -134,7 +135,7 @@ def shown_to(
     files = [g.source for g in GUARDED.values() if g.part == guarded.part]
     sources = digest_of("".join(map(_text, files)))
     found = reached(ROOT, files, guarded.tests, kept / f"reach-{guarded.part}-{sources}-{tests}.json")
-    return lambda line: (tests_of(found, guarded.source, source, line, BUDGET_S), 4.0 * BUDGET_S)
+    return lambda line: (reaching(found, guarded.source, source, line, BUDGET_S), 4.0 * BUDGET_S)
 
 
 def python_files(test: str) -> list[str]:
@@ -191,6 +192,16 @@ def _child(path: str, source: str, tests: Sequence[str]) -> int:
         return 1
 
 
+def shares(rows: Sequence[TriedMutant]) -> dict[str, Share]:
+    """By part, and of all together, how many faults were noticed of those tried."""
+    part_of = {guarded.source: guarded.part or "others" for guarded in GUARDED.values()}
+    fates: dict[str, list[bool]] = {}
+    for row in rows:
+        for part in (part_of.get(row.file, "others"), "all"):
+            fates.setdefault(part, []).append(row.fate != SURVIVED)
+    return {part: Share(sum(fates[part]), len(fates[part])) for part in sorted(fates, key="all".__eq__)}
+
+
 def page(rows: Sequence[TriedMutant]) -> str:
     """The page."""
     lines = bench_output.begun(
@@ -200,6 +211,8 @@ def page(rows: Sequence[TriedMutant]) -> str:
         fates = [row.fate for row in rows if row.file == file]
         survived, hung = fates.count(SURVIVED), fates.count(HUNG)
         lines.append(f"| `{file}` | {len(fates)} | {len(fates) - survived} | {hung} | {survived} |")
+    lines += ["", "| part | tried | noticed, with 95 % interval |", "|---|---|---|"]
+    lines += [f"| {part} | {share.n} | {share} |" for part, share in shares(rows).items()]
     lines += ["", "## Survivors", "", "| file | line | change |", "|---|---|---|"]
     lines += [
         f"| `{row.file.rpartition('/')[2]}` | {row.line} | `{row.change.replace('|', '/')}` |"
