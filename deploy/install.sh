@@ -10,7 +10,7 @@ here="$(cd "$(dirname "$0")" && pwd)"
 root="${ROOT:-}"
 base="$root/opt/shiptwin"
 python="${PYTHON:-python3}"
-lock="${LOCK-$here/requirements.lock}"
+lock="${LOCK-$("$here/which-lock.sh" "$python")}"
 . "$here/switch.sh"
 
 wheels=""

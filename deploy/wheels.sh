@@ -8,10 +8,16 @@ set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
 folder="${1:?usage: wheels.sh FOLDER}"
 python="${PYTHON:-python3}"
-lock="${LOCK:-$here/requirements.lock}"
+lock="${LOCK:-$("$here/which-lock.sh" "$python")}"
 mkdir -p "$folder"
 [ -z "$(ls -A "$folder")" ] || { echo "$folder is not empty" >&2; exit 1; }
-if [ -n "${PLATFORM:-}" ]; then other="--platform $PLATFORM --only-binary=:all:"; else other=""; fi
+other=""
+if [ -n "${PLATFORM:-}" ]; then  # what runs with an older C library runs there, too
+    other="--only-binary=:all: --platform $PLATFORM"
+    machine="${PLATFORM##manylinux_2_}" && machine="${machine#*_}"
+    minor="${PLATFORM#manylinux_2_}" && minor="${minor%%_*}"
+    while [ "$minor" -gt 17 ] 2>/dev/null; do minor=$((minor - 1)) && other="$other --platform manylinux_2_${minor}_$machine"; done
+fi
 # shellcheck disable=SC2086 (words)
 "$python" -m pip download --quiet --disable-pip-version-check --require-hashes $other --dest "$folder" --requirement "$lock"
 "$python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$folder" "${SOURCE:-$(dirname "$here")}"

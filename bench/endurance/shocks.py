@@ -3,10 +3,10 @@
 import random
 import signal
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from bench import bench_output
 from bench.endurance.killed_service import Running, ServiceFolder, Shift
 from twin.errors import TwinError
 from twin.live.keelson import messages
@@ -15,6 +15,8 @@ from twin.live.log.recover import recover_folder
 
 PAUSES_S = (1.0, 1.0, 1.5, 2.0, 2.5, 2.9, 3.0, 3.1, 3.5, 4.0, 5.0, 1.2, 2.8, 3.3, 8.0, 10.0, 20.0, 60.0)
 STEPS_S = (0.4, -0.4, 1.0, 1.5, 1.9, -1.2, -1.9, 2.5, 31.0, 3600.0, -7200.0, 0.8)
+TENTHS_S = tuple(sign * tenth / 10.0 for tenth in range(1, 31) for sign in (1.0, -1.0))
+PAUSE_S, STEP_TO_S = (0.1, 600.0), (0.05, 1e5)  # after those above: shortest and longest
 READY_S = 90.0  # the first start works the certificate out
 BACK_S = 60.0  # within which everything should be as before
 
@@ -28,42 +30,58 @@ class Killed(NamedTuple):
 
 
 class Shocked(NamedTuple):
-    """One pause or clock step: seconds until the next tick and until the promise is back (None: not in time),
-    whether it was announced, ticks since with another mode than hybrid."""
+    """One pause or clock step and its size [s]: seconds until the next tick, until it was said and until the
+    promise is back (None: not in time), ticks since with another mode than hybrid."""
 
     what: str
+    size_s: float
     tick_s: float | None
+    said_s: float | None
     promise_s: float | None
-    announced: bool
     not_hybrid: int
 
 
-def kills(place: ServiceFolder, count: int) -> tuple[list[Killed], int, int]:
-    """Each process is killed at a random instant; (kills, log files that are whole, all log files)."""
-    dice, made = random.Random(4), list[Killed]()
+Keep = Callable[[int, NamedTuple], None]  # takes down what became of shock k
+
+
+def spread_s(k: int, low_s: float, high_s: float) -> float:
+    """The k-th of sizes that cover a range evenly in their logarithm, however many (golden ratio)."""
+    return low_s * (high_s / low_s) ** ((k + 1) * 0.618034 % 1.0)
+
+
+def pause_s(k: int) -> float:
+    """The k-th pause [s]."""
+    return PAUSES_S[k] if k < len(PAUSES_S) else spread_s(k - len(PAUSES_S), *PAUSE_S)
+
+
+def clock_step_s(k: int) -> float:
+    """The k-th step of the wall clock [s]: chosen ones, -3 to 3 s in tenths, then any size to either side."""
+    first = (*STEPS_S, *TENTHS_S)
+    return first[k] if k < len(first) else (-1) ** k * spread_s(k - len(first), *STEP_TO_S)
+
+
+def kills(place: ServiceFolder, numbers: Iterator[int], keep: Keep) -> tuple[int, int]:
+    """Each process is killed at a random instant; (log files that are whole, all log files)."""
     running = place.start()
     if running.until(lambda said: said.inside, READY_S) is None:
         raise TwinError(f"no promise within {READY_S:g} s: {running.last}")
     first_s = running.last.time_s
-    for k in range(count):
-        for _ in running.heard(dice.uniform(0.05, 2.5)):
+    for k in numbers:
+        for _ in running.heard(random.Random(k).uniform(0.05, 2.5)):
             pass
         last = running.kill()
         lost_s = last.time_s - logged_until(place.logs, first_s)
         running = place.start()
-        start_s = running.until(lambda said: True, READY_S)
-        if start_s is None:
+        if running.until(lambda said: True, READY_S) is None:
             raise TwinError(f"it did not start again after kill {k + 1}: see {place.folder / 'errors'}")
-        made.append(Killed(last.time_s - first_s, max(lost_s, 0.0), time.monotonic() - running.began_s))
+        keep(k, Killed(last.time_s - first_s, max(lost_s, 0.0), time.monotonic() - running.began_s))
         first_s = running.last.time_s
-        if k % 20 == 19:
-            bench_output.tell(f"{k + 1} kills, at most {max(m.lost_s for m in made):.3f} s lost")
     if running.until(lambda said: said.inside, BACK_S) is None:
-        raise TwinError(f"after {count} kills no promise within {BACK_S:g} s: {running.last}")
+        raise TwinError(f"after the kills no promise within {BACK_S:g} s: {running.last}")
     running.stop()
     recover_folder(place.logs)
     files = list(place.logs.glob("*.mcap"))
-    return made, sum(whole(path) for path in files), len(files)
+    return sum(whole(path) for path in files), len(files)
 
 
 def logged_until(folder: Path, first_s: float) -> float:
@@ -92,33 +110,30 @@ def whole(path: Path) -> bool:
     return all("repaired" in problem for problem in reader.problems)
 
 
-def pauses(place: ServiceFolder, count: int) -> tuple[list[Shocked], int]:
-    """SIGSTOP and SIGCONT; (each pause, exit code at the end)."""
+def pauses(place: ServiceFolder, numbers: Iterator[int], keep: Keep) -> tuple[int, int]:
+    """SIGSTOP and SIGCONT; (processes that ended with 0 when told to, all processes)."""
     running = ready(place.start())
-    made = []
-    for k in range(count):
-        pause_s = PAUSES_S[k % len(PAUSES_S)]
+    for k in numbers:
         running.tell(signal.SIGSTOP)
-        time.sleep(pause_s)
+        time.sleep(pause_s(k))
         for _ in running.heard(0.02):  # what it had told before
             pass
         running.tell(signal.SIGCONT)
-        made.append(after(running, f"pause of {pause_s:g} s", ("lagging", "began anew", "late")))
-        bench_output.tell(str(made[-1]))
-    return made, running.stop()
+        size_s = pause_s(k)
+        keep(k, after(running, f"pause of {size_s:.3g} s", size_s, ("lagging", "began anew", "late")))
+    return int(running.stop() == 0), 1
 
 
-def clocks(place: ServiceFolder, count: int) -> tuple[list[Shocked], int]:
-    """The wall clock is set and stays there; (each step, exit code at the end)."""
+def clocks(place: ServiceFolder, numbers: Iterator[int], keep: Keep) -> tuple[int, int]:
+    """The wall clock is set and stays there; (processes that ended with 0 when told to, all processes)."""
     shift = Shift(place.folder)
-    running, offset_s, made = ready(place.start(**shift.environment)), 0.0, []
-    for k in range(count):
-        step_s = STEPS_S[k % len(STEPS_S)]
-        offset_s += step_s
+    running, offset_s = ready(place.start(**shift.environment)), 0.0
+    for k in numbers:
+        size_s = clock_step_s(k)
+        offset_s += size_s
         shift.to(offset_s)
-        made.append(after(running, f"clock {step_s:+g} s", ("clock", "stamps")))
-        bench_output.tell(str(made[-1]))
-    return made, running.stop()
+        keep(k, after(running, f"clock {size_s:+.3g} s", abs(size_s), ("clock", "stamps")))
+    return int(running.stop() == 0), 1
 
 
 def ready(running: Running) -> Running:
@@ -127,13 +142,14 @@ def ready(running: Running) -> Running:
     return running
 
 
-def after(running: Running, what: str, words: tuple[str, ...]) -> Shocked:
-    """Listens until ten seconds after the promise is there again."""
-    began, first, back, announced, other = time.monotonic(), None, None, False, 0
+def after(running: Running, what: str, size_s: float, words: tuple[str, ...]) -> Shocked:
+    """Listens until eight seconds after the promise is there again. TwinError: the process has ended."""
+    began, first, back, said_s, other = time.monotonic(), None, None, None, 0
     for said in running.heard(BACK_S):
         now = time.monotonic() - began
         first = now if first is None else first
-        announced |= any(word in said.reasons for word in words)
+        if said_s is None and any(word in said.reasons for word in words):
+            said_s = now
         other += said.mode != "hybrid"
         settled = said.inside and said.mode == "hybrid"
         if not settled:
@@ -142,4 +158,6 @@ def after(running: Running, what: str, words: tuple[str, ...]) -> Shocked:
             back = now
         if back is not None and now > back + 8.0:
             break
-    return Shocked(what, first, back, announced, other)
+    if running.process.poll() is not None:
+        raise TwinError(f"{what}: the process ended with {running.process.returncode}: {running.last}")
+    return Shocked(what, size_s, first, said_s, back, other)

@@ -159,5 +159,5 @@ def _put(table: Any, place: tuple[Any, ...], take: Take) -> None:
             table[last] = table[last] * (0.5 + take.share())
         else:
             table[last] = (take.number(), 0, -1, [], "", None, True, 10**400)[take.byte() % 8]
-    except (KeyError, IndexError, TypeError):
+    except (KeyError, IndexError, TypeError, OverflowError):
         return

@@ -1,7 +1,9 @@
 """`twin-bench fuzz`: libFuzzer, guided by which lines of the twin an input reaches, against all that reads
-the outside world. Each target has a process of its own; what breaks it is kept as a file and named."""
+the outside world. Each target has a process of its own; what breaks it is kept as a file and named. What each
+target has tried is added up in the folder of its inputs, so that a run goes on where the last one ended."""
 
 import argparse
+import json
 import re
 import subprocess
 import sys
@@ -20,7 +22,7 @@ BROKE = re.compile(r"Test unit written to (\S+)")
 
 
 class Fuzzing(NamedTuple):
-    """One target's run: inputs tried, edges of the code reached, inputs kept, and what broke it."""
+    """One target: seconds and inputs tried, edges of the code reached, inputs kept, and what broke it."""
 
     target: str
     seconds: float
@@ -35,6 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--target", action="append", choices=TARGETS, help="only this one (repeat)")
     parser.add_argument(
         "--seconds", type=float, default=600.0, metavar="S", help="for all targets together (default: 600)"
+    )
+    parser.add_argument(
+        "--inputs", type=int, metavar="N", help="a target that has tried so many, all runs together, is done"
     )
     parser.add_argument(
         "--corpus", type=Path, default=Path(".fuzz"), metavar="DIR", help="inputs go on from here (.fuzz)"
@@ -52,14 +57,32 @@ def run(args: argparse.Namespace) -> int:
     rows = []
     for name in names:
         seconds = max(round(args.seconds * SHARES.get(name, 1.0) / whole_share), 1)
-        bench_output.tell(f"{name}, {seconds} s")
-        rows.append(fuzzed(name, seconds, args.corpus))
+        tried = known(name, args.corpus)
+        if tried is None or not args.inputs or tried.inputs < args.inputs:
+            bench_output.tell(f"{name}, {seconds} s")
+            left = args.inputs - (tried.inputs if tried else 0) if args.inputs else None
+            tried = added(tried, fuzzed(name, seconds, args.corpus, left))
+            whole.write_json(tried._asdict(), str(args.corpus / f"{name}.tried.json"))
+        rows.append(tried)
     bench_output.rows(args, rows, page(rows))
     return 3 if any(row.broken for row in rows) else 0
 
 
-def fuzzed(name: str, seconds: int, corpus: Path) -> Fuzzing:
-    """One target for so long, or until it breaks."""
+def known(name: str, corpus: Path) -> Fuzzing | None:
+    """What earlier runs on these inputs made of a target; None: there was none."""
+    file = corpus / f"{name}.tried.json"
+    return Fuzzing(**json.loads(file.read_text())) if file.exists() else None
+
+
+def added(before: Fuzzing | None, last: Fuzzing) -> Fuzzing:
+    """Both runs together: the seconds and inputs of both, the rest as the last one left it."""
+    if before is None:
+        return last
+    return last._replace(seconds=before.seconds + last.seconds, inputs=before.inputs + last.inputs)
+
+
+def fuzzed(name: str, seconds: int, corpus: Path, most: int | None = None) -> Fuzzing:
+    """One target for so long, until it breaks or, where given, for so many inputs."""
     folder, crashes = corpus / name, corpus / "broke"
     folder.mkdir(parents=True, exist_ok=True)
     crashes.mkdir(exist_ok=True)
@@ -70,6 +93,7 @@ def fuzzed(name: str, seconds: int, corpus: Path) -> Fuzzing:
     whole.write(words, "".join(f'"{line}"\n' for line in lines), "--corpus")
     options = [
         f"-max_total_time={seconds}",
+        *([f"-runs={most}"] if most else []),
         f"-timeout={LONGEST_S}",
         f"-rss_limit_mb={MEMORY_MB}",
         f"-max_len={TARGETS[name].longest}",

@@ -1,11 +1,12 @@
 """The inputs that the fuzzer kept, and those that once broke something, each once and without the fuzzer."""
 
+import json
 from pathlib import Path
 
 import pytest
 
 from bench.fuzz.aboard import FuzzedVoyage, LoopTarget, Watched
-from bench.fuzz.run import read
+from bench.fuzz.run import Fuzzing, added, known, read
 from bench.fuzz.targets import TARGETS
 from twin.live.left_open import LeftOpen
 
@@ -78,3 +79,15 @@ def test_what_libfuzzer_says_is_read():
         "loop", 9.0, 1467, 131, 21, "KeyError: 'u'", ".fuzz/broke/loop-crash-ab",
     )  # fmt: skip
     assert read("loop", 9.0, said, 0).broken == ""
+
+
+def test_what_earlier_runs_tried_is_added_up(tmp_path):
+    """Test: a run of 900 inputs on file, and one of 100 that broke. Expected: 1000 inputs in the time of both,
+    and what the last one left."""
+    first, last = (
+        Fuzzing("log", 9.0, 900, 30, 4, "", ""),
+        Fuzzing("log", 1.0, 100, 31, 5, "KeyError", "log-1"),
+    )
+    assert known("log", tmp_path) is None and added(None, first) == first
+    (tmp_path / "log.tried.json").write_text(json.dumps(first._asdict()))
+    assert added(known("log", tmp_path), last) == ("log", 10.0, 1000, 31, 5, "KeyError", "log-1")

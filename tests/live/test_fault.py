@@ -141,7 +141,11 @@ def test_replay_of_a_faulty_voyage_names_the_fault(tmp_path, capsys):
     (
         (["ruder", "stuck", "--log", VOYAGE, "-o", "o.mcap"], 2, "Did you mean 'rudder'"),
         (["rudder", "stukc", "--log", VOYAGE, "-o", "o.mcap"], 2, "'stuck'"),
-        (["rudder", "--log", VOYAGE, "-o", "o.mcap"], 2, "no fault is called"),
+        (["rudder", "--log", VOYAGE, "-o", "o.mcap"], 2, "which fault of 'rudder'?"),
+        (["NoSuch"], 2, "no channel is called 'NoSuch'"),
+        (["hedding", "stuck"], 2, "Did you mean 'heading'"),
+        (["hedding", "no-such"], 2, "no channel is called 'hedding'"),
+        (["stuck"], 2, "no channel is called 'stuck'"),
         (["rudder", "wrong", "--log", VOYAGE, "-o", "o.mcap"], 2, "--by"),
         (["rudder", "stuck"], 2, "--listen"),
         (["rudder", "stuck", "--log", VOYAGE], 2, "-o"),

@@ -208,6 +208,9 @@ def test_the_edges_of_the_algebra():
     assert c3.radius(c3.IDENTITY) == pytest.approx(1.0) and c3.radius(c3.scaled(0.0, c3.IDENTITY)) < 1e-100
     assert c3.inverse(c3.scaled(0.0, c3.IDENTITY)) is None
     assert c3.radius(c3.diagonal((NEVER, 0.0, 0.0))) == NEVER
+    assert c3.radius(((0.0, 1e200, 0.0), (1e200, 0.0, 0.0), (0.0, 0.0, 0.0))) == NEVER  # its minors overflow
+    forged = ((0.0, 0.08, 19.7), (-5.6e302, -1.9e302, -3.5e305), (8e-4, 2e-3, 0.0))
+    assert c3.radius(forged) < 1e-300  # no matrix of a ship: it ends all the same
     for i in range(3):  # each minor by itself
         one = c3.diagonal(tuple(1.5 if j == i else 0.1 for j in range(3)))
         assert not c3.contracts(one) and c3.radius(one) == pytest.approx(1.5)

@@ -13,6 +13,7 @@ import pytest
 from mcap.reader import make_reader
 
 from twin.live.keelson import messages
+from twin.live.log.mcap_read import McapReader
 from twin.live.log.mcap_write import McapWriter
 from twin.live.log.record import Recorder, read
 from twin.live.log.recover import recover, recover_folder
@@ -164,3 +165,12 @@ def test_C6_kill_9_at_any_instant_loses_half_a_second_at_most(tmp_path: Path) ->
         assert kept == [int(at) for _, at in queued[: len(kept)]]
         last = kept[-1] if kept else int(queued[0][1])
         assert (int(queued[-1][1]) - last) * 1e-9 <= 0.5
+
+
+@pytest.mark.parametrize("start", (1, 10**6, 2**63, 2**64 - 1))
+def test_an_end_that_points_outside_of_the_file_costs_no_message(tmp_path, start):
+    """Test: the last record says that the index begins where there is none; 2^63 is more than a file can be
+    long (found by the fuzzer). Expected: all fifty messages."""
+    data, path = whole_log(), tmp_path / "l.mcap"
+    path.write_bytes(data[:-28] + start.to_bytes(8, "little") + data[-20:])
+    assert len(list(McapReader(path).messages())) == 50

@@ -164,12 +164,11 @@ class Certificate(Promise):
         """Whether all that is promised is what the theorem makes of the plant, K, delay, noise and
         disturbance that stand beside it."""
         again = self._again(self.noise, self.disturbance, self.heading_noise)
-        usable = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h)) and all(
-            isfinite(x) and x >= 0.0 for x in (*self.noise, self.heading_noise)
-        )
-        return usable and all(
-            getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__
-        )
+        positive = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h))
+        bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
+        noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
+        told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
+        return positive and noisy and self.operating.whole and all(told)
 
 
 def certify(

@@ -82,14 +82,19 @@ def contracts(a: Matrix, under: float = 1.0) -> bool:
 
 
 def radius(a: Matrix) -> float:
-    """Greatest eigenvalue of a matrix with no negative entry (Perron), from above, to a part in 10^12."""
+    """Greatest eigenvalue of a matrix with no negative entry (Perron), from above, to a part in 10^12; infinite
+    where the minors are beyond what a double holds."""
     if not all(x < float("inf") for row in a for x in row):
         return float("inf")
     low, high = 0.0, max(max(map(max, a)), 1e-300)
     while not contracts(a, high):
+        if high == float("inf"):
+            return high
         low, high = high, 2.0 * high
     while high - low > 1e-12 * high:
         middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
         low, high = (low, middle) if contracts(a, middle) else (middle, high)
     return high
 

@@ -76,6 +76,11 @@ class Disturbance:
     per_metre: Row = (0.0, 0.0, 0.0)
     motion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """All ten; none is negative."""
+        return *self.calm, *self.per_metre, *self.motion
+
     def at(self, H_s: float) -> Row:
         """The bound in a sea of that significant wave height [N, N, N m]."""
         return c3.row(a + b * H_s for a, b in zip(self.calm, self.per_metre, strict=True))

@@ -57,7 +57,10 @@ class Faulty:
     it is."""
 
     def __init__(self, what: str, fault: InjectedFault, row_class: Any = messages.Row):
+        self.channels = () if what in EVERYTHING else channels_of(what)
         if what not in EVERYTHING:
+            if not fault.kind:
+                raise UsageError(f"which fault of {what!r}?{did_you_mean('', KINDS)}")
             if fault.kind not in KINDS:
                 raise UsageError(f"no fault is called {fault.kind!r}.{did_you_mean(fault.kind, KINDS)}")
             if fault.kind in NEEDS_AMOUNT and not fault.by:
@@ -65,7 +68,6 @@ class Faulty:
                     f"{fault.kind}: by how much? --by takes a number in the unit of the channel ({what})."
                 )
         self.what, self.fault, self._row_class = what, fault, row_class
-        self.channels = () if what in EVERYTHING else channels_of(what)
         self.changed = 0  # messages that are not as they were
         self._random = random.Random(fault.seed)
         self._injectors: dict[str, Injector] = {}  # by key, and in rows by channel

@@ -102,9 +102,10 @@ class McapReader:
         if ends_well(stream):
             stream.seek(-28, SEEK_END)
             start = unpack_from("<Q", stream.read(8))[0]
-            stream.seek(start or here)
+            inside = here <= start < stream.seek(0, SEEK_END)
+            stream.seek(start if inside else here)
             with suppress(Broken, error, UnicodeDecodeError):
-                for opcode, _, content in records(stream) if start else ():
+                for opcode, _, content in records(stream) if inside else ():
                     if opcode in (SCHEMA, CHANNEL):
                         self._describe(opcode, content)
                     elif opcode == STATISTICS:

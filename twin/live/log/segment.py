@@ -94,8 +94,11 @@ class Segment:
         os.close(self._file.fd)
 
     def deleted(self) -> bool:
-        """Whether somebody removed the file under our hands."""
-        return os.fstat(self._file.fd).st_nlink == 0
+        """Whether somebody removed the file under our hands; not where the disk does not say so."""
+        try:
+            return os.fstat(self._file.fd).st_nlink == 0
+        except OSError:
+            return False
 
 
 class WholeWrites:

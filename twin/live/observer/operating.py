@@ -60,6 +60,14 @@ class OperatingSet:
 
     ranges: Mapping[str, tuple[float, float]]
 
+    @property
+    def whole(self) -> bool:
+        """Whether every range is two finite numbers that do not fall, those of u, v, r among them; TypeError
+        or ValueError where one is no pair of numbers."""
+        return all(name in self.ranges for name in NU) and all(
+            -inf < least <= greatest < inf for least, greatest in self.ranges.values()
+        )
+
     def clip(self, nu: tuple[float, float, float]) -> tuple[float, float, float]:
         """The motion through water inside the set that is nearest (floats or arrays)."""
         (u, v, r), at = nu, self.ranges
