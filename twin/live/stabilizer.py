@@ -31,9 +31,7 @@ class Stabilizer:
     again once all that a late measurement looks back on is inside. Till then a measurement counts only by
     what it leaves open by itself, and that is carried on: one sample in many ticks suffices."""
 
-    def __init__(
-        self, tube: Tube | None = None, why_not: str = "", authority_margin: float = 0.0
-    ):
+    def __init__(self, tube: Tube | None = None, why_not: str = "", authority_margin: float = 0.0):
         self.tube, self.why_not, self._authority = tube, why_not, authority_margin
         self.promises = tube is not None and tube.certificate.ok
         self._step_margin = tube.certificate.step_margin if tube else 0.0
