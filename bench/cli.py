@@ -61,6 +61,11 @@ BENCHES: dict[str, Bench] = {
         "is the promise given while all is well, and does it come back?",
         "twin-bench promise --hull kvlcc2",
     ),
+    "false-words": Bench(
+        "bench.false_words",
+        "how often is something said of a healthy ship?",
+        "twin-bench false-words FOLDER --rounds 2",
+    ),
     "seaway": Bench(
         "bench.sea_disturbance",
         "what a seaway costs the promise, and is it kept there?",

@@ -114,7 +114,7 @@ def _healthy(hull: str, sea: str, rows: Sequence[Row], log_hz: float, loop_hz: f
             continue
         ticks += 1
         if not tick.certificate.inside:
-            why = (loop.stabilizer.outside or "waits until nothing looks back outside").partition(" = ")[0]
+            why = (loop.stabilizer.outside or "").partition(" = ")[0]
             why = why if loop.stabilizer.promises else "no certificate at this rate"
             without, suspected = without + 1, suspected + any(word in why for word in SUSPECTED)
             said[why] += 1

@@ -3,11 +3,19 @@ where nothing holds."""
 
 from math import hypot
 
+import pytest
+
+from tests.live.conftest import Bridge, Sailing
+from twin.live.build import loop_of
 from twin.live.certificate.certificate import certify
 from twin.live.certificate.observer_tube import Tube
 from twin.live.learning.learned_force import LearnedForce
+from twin.live.outbox import Outbox
+from twin.live.publish import Publisher
+from twin.live.signals.config import Settings
 from twin.live.stabilizer import USELESS, Stabilizer
 from twin.physics.model import Model
+from twin.physics.ship import load
 
 
 def stabilized(ship, make_bridge, **sailing):
@@ -179,3 +187,45 @@ def test_a_speed_that_comes_too_seldom_is_said_to_and_no_bound_wider_than_any_sh
         said.append(bridge.loop.stabilizer.outside or "")
     assert any("is not measured often enough, age = " in text for text in said)
     assert not [text for text in said if "±" in text and float(text.split("± ")[1].split()[0]) > 40.0]
+
+
+@pytest.mark.parametrize("rate_hz", [10.0, 1.0])
+def test_every_tick_without_a_promise_says_one_reason_and_none_with_one(make_service, tmp_path, rate_hz):
+    """Test: the loop that the service builds, through a start, a lost shaft and its return. Expected: one word of the
+    certificate in each tick without a promise, none in any other; while it waits the seconds that are left, and the
+    promise once they are over."""
+    settings = {"loop.rate_hz": rate_hz, "observer.certificate": str(tmp_path / "certificate.json")}
+    bridge, every = make_service(settings=settings), round(10.0 / rate_hz)
+    lost = lambda readings, b: [r for r in readings if r.channel != "propeller_rate_rpm"]
+    waited, ticks = 0, []
+    for k in range(1200):
+        if k % every:
+            bridge.sailing.advance()
+            bridge.now_s += 0.1
+        else:
+            ticks += bridge.run(0.1, lost if 600 <= k < 700 else lambda readings, b: readings)
+    for number, tick in enumerate(ticks):
+        said = [text for text in tick.reasons if text.startswith("certificate: ")]
+        assert len(said) == (not tick.certificate.inside), (number, said)
+        if said and "the promise waits" in said[0]:
+            waited += 1
+            left_s = float(said[0].rpartition("wait = ")[2].removesuffix(" s"))
+            after = number + round(left_s / bridge.loop.stabilizer.tube.certificate.h)
+            assert left_s > 0.0 and ticks[after].certificate.inside
+    assert waited and any(t.certificate.inside for t in ticks)
+
+
+def test_a_ship_that_no_certificate_covers_says_so_in_every_tick(tmp_path):
+    """Test: the loop that the service builds for a 2 m boat at 1 Hz. Expected: the reason once in each tick."""
+    boat = load("usv")
+    bridge = Bridge(boat, Sailing(boat, Model.of(boat)))
+    settings = {
+        "ship.file": "usv",
+        "loop.rate_hz": 1.0,
+        "observer.certificate": str(tmp_path / "certificate.json"),
+    }
+    bridge.loop = loop_of(Settings(settings), bridge.ears, Outbox(Publisher(), "twin", "ship"), None)
+    for tick in bridge.run(15.0):
+        (said,) = (text for text in tick.reasons if text.startswith("certificate: "))
+        assert "does not hold" in said or said == "certificate: no estimate yet", said
+        assert not tick.certificate.inside

@@ -203,7 +203,7 @@ class Loop:
                 f"{channel.name} is lost: its last value, {as_given(value / channel.to_si, 4)}, is held and "
                 "may no longer be so"
             )
-        if self.stabilizer.outside and self.stabilizer.promises:
+        if self.stabilizer.outside:
             said.append(f"certificate: {self.stabilizer.outside}")
         if self.tube.beyond:
             said.append(f"prediction tube: no promise, {self.tube.beyond}")
@@ -212,7 +212,7 @@ class Loop:
                 f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}"
             )
         if seen.instant.number < 10.0 * self.rate_hz:
-            said += self.notes
+            said += [note for note in self.notes if note not in said]
         return said
 
 

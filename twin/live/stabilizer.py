@@ -21,6 +21,7 @@ from twin.physics.state import Situation
 NEEDED = {**CONTROLS, "psi": "heading"}  # inputs of the physics that nothing stands in for
 # the bound goes on as for calm water, to be held against the measurements; it is not promised
 NO_WAVES = "no wave height"
+NO_ESTIMATE = "no estimate yet"
 USELESS = 1e3  # m/s: a bound above every speed at sea
 
 
@@ -30,9 +31,7 @@ class Stabilizer:
     again once all that a late measurement looks back on is inside. Till then a measurement counts only by
     what it leaves open by itself, and that is carried on: one sample in many ticks suffices."""
 
-    def __init__(
-        self, tube: Tube | None = None, why_not: str = "no certificate", authority_margin: float = 0.0
-    ):
+    def __init__(self, tube: Tube | None = None, why_not: str = "", authority_margin: float = 0.0):
         self.tube, self.why_not, self._authority = tube, why_not, authority_margin
         self.promises = tube is not None and tube.certificate.ok
         self._step_margin = tube.certificate.step_margin if tube else 0.0
@@ -46,7 +45,7 @@ class Stabilizer:
         self.broken = ""  # what shows that the promise's conditions do not hold
         self._heard: set[str] = set()  # which of u, v, r an instrument of its own has measured so far
         self._guessed: tuple[str, ...] = NU  # whose bound rests on no measurement, but on what a ship can do
-        self.outside: str | None = why_not
+        self.outside: str | None = why_not  # why nothing is promised in this tick; None: it is
 
     @property
     def gain(self) -> float:
@@ -68,6 +67,7 @@ class Stabilizer:
         tube = self.tube
         if tube is None or not observer.estimate.ready:
             margin = tube.certificate.margin if tube else 0.0
+            self.outside = self.why_not or (NO_ESTIMATE if tube else "")
             return Certified(margin=margin, authority_margin=self._authority)
         dt = tube.certificate.h if dt is None else dt
         if observer.restarts != self._restarts:
@@ -102,6 +102,9 @@ class Stabilizer:
         else:
             tube.reset(*(known if self._inside > 1 else open_.bounds))
             nothing = tube.says_nothing()
+            self.outside = self.outside or self.broken or nothing or self._waits(tube)
+        if not self.promises:
+            self.outside = self.why_not
         if nothing:  # with measurements it comes back by itself
             return Certified(
                 certificate.margin, USELESS, False, degrees(pi), self._step_margin, self._authority
@@ -155,6 +158,15 @@ class Stabilizer:
             self._inside += 1
         if self._inside == 1:
             self._inside_s = now_s
+
+    def _waits(self, tube: Tube) -> str:
+        """What the promise waits for while nothing is wrong any more, and for how long [s] if nothing comes
+        between."""
+        for_s = (tube.window - self._inside) * tube.certificate.h
+        return (
+            "all is well again; the promise waits until no late measurement can look back to when it was "
+            f"not, wait = {num(for_s, 2)} s"
+        )
 
     def _clocked(self, dt: float, tube: Tube) -> str:
         """Remembers when a tick last came late; in words, when it came so late that nothing can be said of
