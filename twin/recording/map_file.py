@@ -164,7 +164,7 @@ def places_agree(columns: Mapping[str, Column], constant: Mapping[str, float], w
 def time_column(entry: Any, where: str) -> TimeColumn:
     """The entry `[time]`. SettingsError: its step is not positive."""
     out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
-    one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
+    one_of(out.unit, (*UNITS["s"], "iso", "excel"), f"{where}: [time] unit")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
         raise SettingsError(
             f"{where}: [time] rebuild = {as_given(out.rebuild)} must be true, false or a step in seconds."
