@@ -13,6 +13,7 @@ from twin.recording.formats import recognised
 from twin.recording.formats.header_rows import HeaderRows, header_rows, own_labels
 from twin.recording.formats.name_words import unit_in
 from twin.recording.headers import is_number
+from twin.recording.long_table import long_columns
 from twin.recording.mapping import Key, Layout
 from twin.recording.sheet import Sheet, cells, find_separator, open_text
 from twin.recording.table import EMPTY
@@ -130,7 +131,20 @@ def of_text(path: Path) -> SeenColumns:
     for i, label in enumerate(labels if header else []):
         seen.groups[label] = header.groups[i] if header and i < len(header.groups) else ""
         seen.units[label] = unit_in(header.units[i].strip("[]()")) if header and i < len(header.units) else ""
-    return seen
+    return as_wide(seen)
+
+
+def as_wide(seen: SeenColumns) -> SeenColumns:
+    """A long table with a column for each name of a reading; another as it is."""
+    numbers = [n for n in seen.names if seen.has_numbers(n)]
+    found = long_columns(seen.names, seen.cells, numbers)
+    if found is None:
+        return seen
+    told, values = np.array(seen.cells[found[0]]), seen.numbers(found[1])
+    names = [n for n in dict.fromkeys(seen.cells[found[0]]) if n]
+    kept = {n: c for n, c in seen.cells.items() if n not in found}
+    cells_of = {n: np.where(told == n, values, np.nan) for n in names}
+    return SeenColumns(seen.path, [*kept, *names], kept | cells_of, seen.layout | {"long": list(found)})
 
 
 def all_words(names: list[str]) -> bool:
@@ -142,7 +156,7 @@ def header_of(path: Path) -> HeaderRows | None:
     """The header of a text table, by its first lines that are not blank; None: its first line is a row, or
     no line is one."""
     with open_text(path, None) as stream:
-        lines = [line for line in islice(stream, HEAD_LINES)]
+        lines = list(islice(stream, HEAD_LINES))
     at = [i for i, line in enumerate(lines) if line.strip()]
     rows_like = [find_separator(lines[i]) for i in at[len(at) // 2 :]]
     if not rows_like:

@@ -48,7 +48,7 @@ def one_drive_each(best: dict[str, tuple[Where, ActuatorGuess]]) -> dict[str, tu
     """Without the second best of what says how hard each pushes, and without what only steers where nothing
     pushes."""
     by_owner: dict[str, list[str]] = defaultdict(list)
-    for channel, (_, found) in best.items():
+    for _, found in best.values():
         by_owner[found.owner].append(found.last)
     pushed = {
         o: next(p for p in PREFERRED if p in lasts)

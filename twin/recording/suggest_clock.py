@@ -15,8 +15,8 @@ from twin.recording.mapping import TimeColumn
 from twin.recording.timebase import DAY_S, moments
 from twin.recording.units import UNITS
 
-DAYS = ("%d.%m.%Y", "%Y/%m/%d", "%Y-%m-%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%Y%m%d", "%d%m%y", "%d.%m.%y",
-        "%m/%d/%y", "%d-%b-%Y", "%d %b %Y", "%b %d, %Y", "%d-%b-%y")  # fmt: skip
+DAYS = ("%d.%m.%Y", "%Y/%m/%d", "%Y-%m-%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%Y%m%d", "%d%m%y",
+        "%d.%m.%y", "%m/%d/%y", "%d-%b-%Y", "%d %b %Y", "%b %d, %Y", "%d-%b-%y")  # fmt: skip
 CLOCKS = (
     "%H:%M:%S.%f",
     "%H:%M:%S",
@@ -117,7 +117,8 @@ def in_parts(seen: SeenColumns, common: Sequence[str]) -> dict[str, Any] | None:
     held = {
         part: n for n in common for part in PARTS if words_of(n)[0][:1] == [part] or n.strip().lower() == part
     }
-    held |= {"second": n for n in common if "second" not in held and n.strip().lower() in ("sec", "seconds")}
+    seconds = next((n for n in common if n.strip().lower() in ("sec", "seconds")), None)
+    held = ({"second": seconds} if seconds else {}) | held
     if not {"year", "month", "day", "hour", "minute", "second"} <= set(held):
         return None
     fraction = ".%f" * any("." in s for s in seen.texts(held["second"])[:LOOKED_AT_ROWS])

@@ -18,6 +18,7 @@ from twin.recording.formats import (
     keelson,
     nmea0183,
     nmea2000,
+    px4,
     ros,
     signalk,
 )
@@ -47,7 +48,7 @@ FORMATS: tuple[Format, ...] = (
     Format("feather", binary_tables.FEATHER, binary_tables.looks_feather, table=binary_tables.Feather),
     Format("excel", binary_tables.EXCEL, binary_tables.looks_excel, table=binary_tables.Excel),
     Format("ros", ros.SAYS, ros.looks, ros.read),
-    Format("ulog", autopilots.ULOG, autopilots.looks_ulog, autopilots.read_ulog),
+    Format("ulog", px4.ULOG, px4.looks_ulog, px4.read_ulog),
     Format("dataflash", autopilots.FLASH, autopilots.looks_flash, autopilots.read_flash),
     Format("tlog", autopilots.TLOG, autopilots.looks_tlog, autopilots.read_tlog),
     Format("nmea2000", "an NMEA 2000 log", nmea2000.looks, nmea2000.read),

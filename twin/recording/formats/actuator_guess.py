@@ -12,10 +12,11 @@ import numpy as np
 from twin.recording.formats.name_words import words_of
 
 SIDES = ("port", "starboard", "center")
-ENDS = {"fore": "fore", "forward": "fore", "fwd": "fore", "front": "fore", "bow": "bow", "aft": "aft", "rear": "aft",
-        "back": "aft", "stern": "stern"}  # fmt: skip
-KINDS = ("azimuth", "azipod", "pod", "thruster", "waterjet", "jet", "outboard", "engine", "motor", "actuator",
-         "propeller", "prop", "shaft", "esc", "servo", "screw", "channel", "output", "rudder", "tunnel")  # fmt: skip
+ENDS = {"fore": "fore", "forward": "fore", "fwd": "fore", "front": "fore", "bow": "bow", "aft": "aft",
+        "rear": "aft", "back": "aft", "stern": "stern"}  # fmt: skip
+KINDS = ("azimuth", "azipod", "pod", "thruster", "waterjet", "jet", "outboard", "engine", "motor",
+         "actuator", "propeller", "prop", "shaft", "esc", "servo", "screw", "channel", "output", "rudder",
+         "tunnel")  # fmt: skip
 ALIKE = {
     "prop": "propeller",
     "screw": "propeller",
@@ -33,15 +34,17 @@ PLAIN = (
     "actuator",
     "rudder",
 )  # of a side: the side is name enough
-NOT_IT = frozenset(
-    "temperature temp voltage volt current amp amps power torque fuel load pressure oil battery charge error err dot "
-    "acc zero point bias std cov status heading course latitude longitude wind distance "
-    "bank time stamp timestamp hours alarm mode flag yaw roll pitch_deg seconds secs north east min max trim sigma "
-    "capacity consumption coolant boost".split()
-)
-ORDERS = frozenset(
-    "ref reference setpoint sp desired des target order cmd command goal demand soll throttle".split()
-)
+NOT_IT = frozenset((
+    "temperature", "temp", "voltage", "volt", "current", "amp", "amps", "power", "torque", "fuel", "load",
+    "pressure", "oil", "battery", "charge", "error", "err", "dot", "acc", "zero", "point", "bias", "std",
+    "cov", "status", "heading", "course", "latitude", "longitude", "wind", "distance", "bank", "time",
+    "stamp", "timestamp", "hours", "alarm", "mode", "flag", "yaw", "roll", "pitch_deg", "seconds", "secs",
+    "north", "east", "min", "max", "trim", "sigma", "capacity", "consumption", "coolant", "boost",
+))  # fmt: skip
+ORDERS = frozenset((
+    "ref", "reference", "setpoint", "sp", "desired", "des", "target", "order", "cmd", "command", "goal",
+    "demand", "soll", "throttle",
+))  # fmt: skip
 PWM, SHARE = (700.0, 2300.0), 1.5
 PREFERRED = (
     "rate_rpm",
@@ -52,7 +55,7 @@ PREFERRED = (
 
 
 class ActuatorGuess(NamedTuple):
-    """Whose, which of its channels, the unit the name states, whether it is an order, how many words spoke."""
+    """Whose, which of its channels, the unit the name states, whether an order, how many words spoke."""
 
     owner: str
     last: str
@@ -114,9 +117,7 @@ def channel_of(words: Sequence[str], unit: str, good: np.ndarray) -> tuple[str, 
     if (
         {"pwm", "pulse"} & there
         or unit == "us"
-        or PWM[0] <= float(good.min())
-        and most <= PWM[1]
-        and "throttle" in there
+        or (PWM[0] <= float(good.min()) and most <= PWM[1] and "throttle" in there)
     ):
         return ("pwm_us", 2) if most > 100.0 else ("command", 1)
     if {"force", "thrust"} & there or unit in ("N", "kN"):
@@ -158,7 +159,7 @@ def channel_of(words: Sequence[str], unit: str, good: np.ndarray) -> tuple[str, 
 
 
 def keys_of(found: ActuatorGuess, values: np.ndarray) -> dict[str, Any]:
-    """Unit of the entry of a map, where it is not the channel's own. `values` (N,) in the unit of the file."""
+    """Unit of a map's entry, where it is not the channel's own. `values` (N,) in the unit of the file."""
     most = float(np.nanmax(np.abs(values)))
     if found.last == "command" or found.last == "pitch_ratio":
         return {"unit": "%"} if found.unit == "%" or most > SHARE + 1.0 else {}

@@ -86,7 +86,7 @@ def filled_right(cells: Sequence[str], width: int) -> list[str]:
 
 
 def own_labels(names: Sequence[str], groups: Sequence[str]) -> list[str]:
-    """Names that are told apart: with their group where it is needed, with a number where that is not enough."""
+    """Names that are told apart: with their group where it is needed, else with the word again."""
     bare = [n.strip() for n in names]
     many = Counter(bare)
     out: list[str] = []

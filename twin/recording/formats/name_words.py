@@ -100,6 +100,9 @@ def words_of(name: str) -> tuple[list[str], str]:
     found = WORD.findall(CAMEL.sub(" ", plain_letters(BRACKETS.sub(" ", name))).lower())
     if not unit:
         found, unit = unit_behind(found)
+        subject, source, _ = name.partition("/")
+        if not unit and source and subject:  # a subject of Keelson before its source
+            unit = unit_behind(WORD.findall(subject.lower()))[1]
     elif found and unit == UNIT_WORDS.get(found[-1], "") and found[-1] not in NO_UNIT_ALONE:
         found = found[:-1]
     return [w for word in found for w in ENGLISH.get(word, word).split()], unit

@@ -74,6 +74,7 @@ class Signals:
         self.series: dict[str, Series] = {}
         self.skipped: Counter[str] = Counter()
         self.notes: list[str] = []
+        self.settings: dict[str, dict[str, float]] = {}  # by series: what the vessel's settings say of it
         self._latest = -np.inf
 
     def of(self, name: str, source: str, quantity: str = "", rank: int = 0) -> Series:
