@@ -22,13 +22,15 @@ def actuator_columns(files: Sequence[SeenColumns]) -> dict[str, tuple[Where, Act
         for name in seen.names:
             if not seen.has_numbers(name):
                 continue
-            found = guess_actuator(told_of(seen, name, files), seen.numbers(name), seen.units.get(name, ""))
+            found = guess_actuator(
+                name_and_place(seen, name, files), seen.numbers(name), seen.units.get(name, "")
+            )
             if found and (found.channel not in best or rank(found) > rank(best[found.channel][1])):
                 best[found.channel] = (seen, name), found
     return one_drive_each(best)
 
 
-def told_of(seen: SeenColumns, name: str, files: Sequence[SeenColumns]) -> str:
+def name_and_place(seen: SeenColumns, name: str, files: Sequence[SeenColumns]) -> str:
     """What there is to read about a column: of several files also where its own lies."""
     if len(files) < 2 or seen.groups.get(name):
         return seen.said(name)
@@ -68,7 +70,7 @@ def several(found: dict[str, Any]) -> bool:
 
 
 def why_of(found: ActuatorGuess, values: np.ndarray) -> list[str]:
-    """The range, and what a person should look at."""
+    """The range, and what a person should look at. `values` (N,) in the unit of the file."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     said = [f"{as_given(low, 6)} to {as_given(high, 6)}"]
     said += ["an order, not what was measured"] * (found.order and found.last not in ("pwm_us", "command"))

@@ -12,7 +12,7 @@ from twin.recording.columns_seen import SeenColumns
 from twin.recording.formats.guess import guess
 from twin.recording.formats.name_words import words_of
 from twin.recording.mapping import TimeColumn
-from twin.recording.timebase import DAY_S, moments
+from twin.recording.timebase import DAY_S, FRACTION, moments
 from twin.recording.units import UNITS
 
 DAYS = ("%d.%m.%Y", "%Y/%m/%d", "%Y-%m-%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%Y%m%d", "%d%m%y",
@@ -190,10 +190,8 @@ def text_format(stamps: Sequence[str]) -> dict[str, Any] | None:
 
 def cut(stamp: str) -> str:
     """A stamp whose fraction has at most six digits, as strptime reads them, with a point."""
-    head, point, part = stamp.rpartition(".") if "." in stamp else stamp.rpartition(",")
-    if point and part.isdigit() and ":" in head:
-        return f"{head}.{part[:6]}"
-    return stamp
+    found = FRACTION.match(stamp)
+    return f"{found[1]}.{found[2][:6]}{found[3] or ''}" if found else stamp
 
 
 def seconds_of(seen: SeenColumns, time: dict[str, Any]) -> np.ndarray | None:

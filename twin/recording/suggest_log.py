@@ -27,14 +27,14 @@ def of_signals(signals: Signals, sources: Sources) -> str:
         for c, w in actuator_columns(topics).items()
         if c not in choice.columns and signals.series[w[0][1]].quantity in ("", *CONTROLS)
     }
-    told = by_settings(signals)
-    parts = {} if told or (not several(parts) and has_both(choice.columns)) else parts
+    set_up = by_settings(signals)
+    parts = {} if set_up or (not several(parts) and has_both(choice.columns)) else parts
     more = proposed(topics, own | taken, parts, {"column": CLOCK, "unit": "s"}, own)
     taken_too = "What stands under [columns] first is taken without a map too; change what is wrong."
     lines = [f"# {signals.path.name}: {signals.says}. {taken_too}", ""]
     lines += [f"# {note}" for note in choice.notes]
     lines += ["", "[columns]", *(f"{quoted(channel)} = {toml(c)}" for channel, c in choice.columns.items())]
-    more |= {c: Entry(keys, [why]) for c, (keys, why) in told.items()}
+    more |= {c: Entry(keys, [why]) for c, (keys, why) in set_up.items()}
     more |= engine_entry(signals, choice.columns | more)
     added = {c: e for c, e in more.items() if c not in choice.columns and not clashes(c, choice.columns)}
     lines += ["# by their names; read these with care"] * bool(added)

@@ -14,7 +14,7 @@ from twin.recording.formats.signals import Signals
 
 CLOCK = "time_s"  # the column of stamps that each topic gets
 OWN = 9.0  # words that speak for what the format itself names
-MOST = 60_000  # samples of a topic that are looked at
+MOST_SAMPLES = 60_000  # samples of a topic that are looked at
 SHAFT = re.compile(r"RPM\.shaft(\d+)$")
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
 FULL_DEG = 35.0  # a rudder's full angle, where nobody said it
@@ -33,7 +33,8 @@ def topics_seen(signals: Signals) -> list[SeenColumns]:
 def topic_seen(signals: Signals, names: Sequence[str]) -> SeenColumns:
     """One topic's series with their stamps; what a number among outputs stands for is said beside it."""
     time_s, columns = as_columns(signals, names)
-    cells: dict[str, Any] = {CLOCK: time_s[:MOST], **{n: x[:MOST] for n, x in columns.items()}}
+    cells: dict[str, Any] = {CLOCK: time_s[:MOST_SAMPLES]}
+    cells |= {n: x[:MOST_SAMPLES] for n, x in columns.items()}
     seen = SeenColumns(signals.path, [CLOCK, *names], cells)
     for name in names:
         label = (

@@ -100,8 +100,8 @@ def unit_of_turns(keys: dict[str, Any], why: list[str], stated: str, values: np.
 
 
 def samples(seen: SeenColumns, name: str, time: dict[str, Any]) -> Samples | None:
-    """Where a column has numbers: their stamps, in order; None where the clock cannot be read, or they are
-    few."""
+    """Where a column has numbers: their stamps (N,) [s], in order, and values (N,); None where the clock
+    cannot be read, or they are few."""
     t, x = seconds_of(seen, time), seen.numbers(name)
     if t is None or t.shape != x.shape:
         return None
@@ -132,7 +132,7 @@ def track(
 def placed_samples(
     of: tuple[SeenColumns, str, Guess], keys: dict[str, Any], time: dict[str, Any]
 ) -> Samples | None:
-    """Samples of a position's column in degrees or metres, as its entry reads them."""
+    """Samples (N,) of a position's column in [deg] or [m], as its entry reads them."""
     seen, name, _ = of
     if keys.get("unit") == "dms":
         t = seconds_of(seen, time)
@@ -194,7 +194,7 @@ def over_ground(entries: dict[str, Any], taken: Taken, time: dict[str, Any], spe
 
 
 def magnitude(taken: Taken, time: dict[str, Any], speed: str) -> Samples | None:
-    """Samples of a speed, of both its parts where it has two."""
+    """Samples (N,) of a speed, of both its parts where it has two, in the unit of the file."""
     a = samples(*taken[speed][:2], time)
     other = SPEEDS[speed]
     b = samples(*taken[other][:2], time) if other in taken else None
@@ -247,7 +247,7 @@ def turn_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> No
 def heading_samples(
     keys: dict[str, Any], of: tuple[SeenColumns, str, Guess], time: dict[str, Any]
 ) -> Samples | None:
-    """Samples of the heading [deg], continuous, as its entry reads them."""
+    """Samples (N,) of the heading [deg], continuous, as its entry reads them."""
     seen, name, _ = of
     if str(keys.get("unit", "")).startswith("quaternion"):
         x, y, z, w = (seen.numbers(n) for n in keys["column"])
