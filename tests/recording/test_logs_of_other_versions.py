@@ -108,6 +108,14 @@ def test_parts_that_another_version_names_otherwise_do_not_end_the_log(flash, sa
     assert any("WIND messages that hold other parts" in n for n in v.meta["notes"])
 
 
+def test_noise_within_a_log_is_not_printed(flash, capfd):
+    """Test: 200 bytes of something else in the middle. Expected: no word on the terminal, and the rest is read."""
+    path = flash({})
+    whole = path.read_bytes()
+    path.write_bytes(whole[:6000] + bytes(range(200)) + whole[6000:])
+    assert len(read_voyage(path, controls=False)) > 50 and capfd.readouterr() == ("", "")
+
+
 def test_telemetry_without_an_attitude_has_other_messages(tmp_path, sailed):
     pytest.importorskip("pymavlink", reason="needs the extra io")
     from pymavlink.dialects.v20 import ardupilotmega

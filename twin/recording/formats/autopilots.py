@@ -2,13 +2,15 @@
 pymavlink."""
 
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stdout
+from io import StringIO
 from math import atan2, degrees
 from pathlib import Path
 from typing import Any
 
 from twin.errors import DataError
 from twin.recording.formats.autopilot_settings import by_function, setting
-from twin.recording.formats.extra import library, one_line
+from twin.recording.formats.extra import library, one_line, silent
 from twin.recording.formats.signals import Signals
 
 FLASH, TLOG = "an ArduPilot DataFlash log", "a MAVLink telemetry log"
@@ -244,24 +246,13 @@ def collect(
     of it can be read."""
     settings: dict[str, float] = {}
     try:
-        log = opened()
-        while (m := log.recv_msg()) is not None:
-            kind = m.get_type()
-            if kind in ("PARM", "PARAM_VALUE"):
-                setting(settings, m)
-                continue
-            source = source_of(m) if kind in known else None
-            if source is None:
-                out.skipped["messages of other kinds"] += 1
-                continue
-            rank, parts = known[kind]
-            try:
-                values = list(parts(m))
-            except (AttributeError, TypeError, ValueError):  # another version names its parts otherwise
-                out.skipped[f"{kind} messages that hold other parts"] += 1
-                continue
-            for part, quantity, value in values:
-                out.put(f"{kind}{source}.{part}", source, quantity, float(m._timestamp), float(value), rank)
+        with silent(), redirect_stdout(StringIO()):
+            log = opened()
+            while (m := log.recv_msg()) is not None:
+                if m.get_type() in ("PARM", "PARAM_VALUE"):
+                    setting(settings, m)
+                else:
+                    keep(out, m, known, source_of)
     except MemoryError:
         raise
     except Exception as error:
@@ -272,3 +263,25 @@ def collect(
         out.notes.append(f"it is damaged and was read up to there: {one_line(error)}")
     by_function(out, settings)
     return out.finish()
+
+
+def keep(
+    out: Signals,
+    m: Any,
+    known: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]],
+    source_of: Callable[[Any], str | None],
+) -> None:
+    """One message's values into their series; one of another kind, or with other parts, is counted."""
+    kind = m.get_type()
+    source = source_of(m) if kind in known else None
+    if source is None:
+        out.skipped["messages of other kinds"] += 1
+        return
+    rank, parts = known[kind]
+    try:
+        values = list(parts(m))
+    except (AttributeError, TypeError, ValueError):  # another version names its parts otherwise
+        out.skipped[f"{kind} messages that hold other parts"] += 1
+        return
+    for part, quantity, value in values:
+        out.put(f"{kind}{source}.{part}", source, quantity, float(m._timestamp), float(value), rank)
