@@ -262,6 +262,7 @@ def collect(
             ) from None
         out.notes.append(f"it is damaged and was read up to there: {one_line(error)}")
     by_function(out, settings)
+    out.without_strays()
     return out.finish()
 
 
