@@ -261,3 +261,11 @@ def test_a_clock_without_a_date_goes_on_past_midnight(tmp_path):
         write(tmp_path / "night.csv", {"time": day, "n": PLACE.real, **dict(list(AMERICAN.items())[1:])})
     )
     assert v.duration_s == 399.0
+
+
+def test_a_stamp_years_ahead_is_one_line_and_takes_no_memory(tmp_path):
+    """Test: the last of the stamps lies three hundred years ahead. Expected: a map, and what is wrong with the
+    stamps at its head."""
+    columns = {"epoch": np.r_[1.7e9 + T[:-1], 1e10], **dict(list(AMERICAN.items())[1:])}
+    text = suggestion([write(tmp_path / "far.csv", columns)], {})
+    assert "cannot be imported by it yet" in text and "leaps ahead" in text

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.recording.suggest_units import Taken, heading_samples, placed_samples, samples
+from twin.recording.suggest_units import Taken, heading_samples, instants_between, placed_samples, samples
 
 HEADING = "heading_true_north_deg"
 CHART = ("north_m", "east_m")
@@ -87,9 +87,10 @@ def sway_side(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> No
     if psi is None or v is None or place[0] is None or place[1] is None:
         return
     step = 10.0 * float(np.median(np.diff(place[0][0])))
-    grid = np.arange(place[0][0][0], place[0][0][-1], step)
+    grid = instants_between(place[0][0][0], place[0][0][-1], step)
     if grid.size < 12:
         return
+    step = float(grid[1] - grid[0])
     way = np.diff(np.interp(grid, *place[0]) + 1j * np.interp(grid, *place[1])) / step
     middle = grid[:-1] + step / 2.0
     aside = (way * np.exp(-1j * np.radians(np.interp(middle, *psi)))).imag

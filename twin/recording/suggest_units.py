@@ -26,6 +26,7 @@ WATER = "surge_velocity_through_water_mps"
 SPEED_UNITS = (("m/s", 1.0), ("kn", KNOT_MPS), ("km/h", 1 / 3.6), ("ft/s", 0.3048))
 RATE_UNITS = (("deg/s", 1.0), ("deg/min", 1.0 / 60.0), ("rad/s", DEG_PER_RAD))
 SLOW_TURNS = 30.0  # an unlabelled shaft that never turns faster is told in 1/s
+MOST_INSTANTS = 2000.0
 Samples = tuple[np.ndarray, np.ndarray]  # stamps [s] in order, values
 
 
@@ -149,11 +150,15 @@ def placed_samples(
     return found[0], from_ddmm(found[1]) if keys.get("unit") == "ddmm" else found[1] * scale
 
 
+def instants_between(first: float, last: float, step: float) -> np.ndarray:
+    """Instants (N,) [s] so far apart, or farther where they would be more than some thousands."""
+    return np.arange(first, last, max(step, (last - first) / MOST_INSTANTS, 1e-6))
+
+
 def chords(t: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(instants, way made good between them [m]): some ten of the usual steps apart, so that the noise of
     positions is small beside it. `t` (N,) [s], `place` (N,) [m]."""
-    step = max(10.0 * float(np.median(np.diff(t))), (t[-1] - t[0]) / 2000.0)
-    grid = np.arange(t[0], t[-1], step)
+    grid = instants_between(t[0], t[-1], 10.0 * float(np.median(np.diff(t))))
     at = np.interp(grid, t, place.real) + 1j * np.interp(grid, t, place.imag)
     return grid, np.abs(np.diff(at))
 
@@ -225,7 +230,7 @@ def turn_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> No
     if psi is None or r is None:
         return
     step = 10.0 * float(max(np.median(np.diff(psi[0])), np.median(np.diff(r[0]))))
-    grid = np.arange(max(psi[0][0], r[0][0]), min(psi[0][-1], r[0][-1]), step)
+    grid = instants_between(max(psi[0][0], r[0][0]), min(psi[0][-1], r[0][-1]), step)
     if grid.size < 8:
         return
     summed = np.r_[0.0, np.cumsum((r[1][1:] + r[1][:-1]) / 2.0 * np.diff(r[0]))]

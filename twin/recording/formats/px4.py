@@ -1,6 +1,8 @@
 """Logs of PX4: ULog, by pyulog."""
 
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +28,8 @@ def read_ulog(path: Path) -> Signals:
     where it knows one. DataError: it cannot be read."""
     module, out = library("pyulog", path, ULOG), Signals(path, ULOG)
     try:
-        log = module.ULog(str(path), list(TOPICS))
+        with redirect_stdout(StringIO()):  # the library prints what it stumbles over
+            log = module.ULog(str(path), list(TOPICS))
     except MemoryError:
         raise
     except Exception as error:
