@@ -139,3 +139,22 @@ def test_what_is_not_available_is_no_measurement(tmp_path, sailed):
 
 def test_an_addressed_group_is_told_from_a_broadcast():
     assert of_can_id(0x18EA0E21) == (0xEA00, 0x21) and of_can_id(0x09F112CC) == (127250, 0xCC)
+
+
+def test_messages_inside_sentences_of_a_gateway():
+    """Test: the makers' own samples. Expected: a position off Puerto Vallarta, whose bytes come last first; an
+    attitude of source 15; a position in base 64, at the gateway's own second."""
+    from base64 import b64encode
+
+    from twin.recording.formats.nmea2000_wrapped import wrapped
+    from twin.recording.formats.recorder_stamps import Stamp
+
+    t, pgn, source, data, _ = wrapped("$MXPGN,01F801,2801,C1308AC40C5DE343*19", Stamp())
+    assert (t, pgn, source) == (None, 129025, 1)
+    assert int.from_bytes(data[:4], "little", signed=True) * 1e-7 == pytest.approx(20.7479619)
+    assert int.from_bytes(data[4:], "little", signed=True) * 1e-7 == pytest.approx(-105.3783356)
+    t, pgn, source, data, _ = wrapped("1795608000.5 $PCDIN,01F119,00000000,0F,2AAF00D1067414FF*59", Stamp())
+    assert (t, pgn, source, data[:3].hex()) == (1795608000.5, 127257, 15, "2aaf00")
+    body = b64encode(bytes(range(8))).decode().rstrip("=")
+    assert wrapped(f"!PDGY,129025,2,7,255,12.5,{body}", Stamp()) == (12.5, 129025, 7, bytes(range(8)), True)
+    assert wrapped("$GPRMC,120000,A", Stamp()) is None

@@ -1,10 +1,13 @@
 """Every real log goes in, or says in one line what it is and what it lacks (skipped where the data are
 not)."""
 
+import tomllib
+
 import numpy as np
 import pytest
 
 from twin.errors import DataError
+from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_map import suggestion
 
@@ -51,10 +54,6 @@ def test_the_figure_eight_of_a_yacht_agrees_with_itself(data):
     ["turn_14-Oct-2020_14_08_51.csv", "zigzag_31-Jul-2020_13_04_24.csv", "random_03-Aug-2020_11_04_37.csv"],
 )
 def test_a_model_tank_table_goes_in_by_its_proposed_map(data, run):
-    import tomllib
-
-    from twin.recording.map_file import parse_map
-
     path = data / "esso_osaka" / run
     text = suggestion([path], {})
     v = read_voyage(path, parse_map(tomllib.loads(text), "proposed"))
@@ -68,19 +67,17 @@ def test_a_model_tank_table_goes_in_by_its_proposed_map(data, run):
     assert np.nanmax(v["propeller_rate_rpm"]) > 100.0 and "NOT FOUND" not in text
 
 
-def test_a_catamaran_without_a_rudder_is_told_so_in_its_proposed_map(data):
-    text = suggestion([data / "blueboat" / "fixed_00000216.csv"], {})
-    assert (
-        ("NOT FOUND, and needed: rudder_angle_deg, propeller_rate_rpm") in text
-        and 'unit = "rad/s"' in text
-        and 'unit = "ms"' in text
-    )
+def test_a_catamaran_of_two_thrusters_goes_in_by_its_proposed_map(data):
+    path = data / "blueboat" / "fixed_00000216.csv"
+    text = suggestion([path], {})
+    v = read_voyage(path, parse_map(tomllib.loads(text), "proposed"))
+    assert "NOT FOUND" not in text and 'unit = "rad/s"' in text and 'unit = "ms"' in text
+    assert v.has("port.pwm_us", "starboard.pwm_us", "heading_true_north_deg", "surge_velocity_mps")
 
 
-def test_a_folder_of_one_table_a_topic_is_joined(data):
-    text = suggestion([data / "milliampere" / "maneuvering1"], {})
-    assert (
-        'file = "navigation/nav_estimate.csv"' in text
-        and 'unit = "quaternion"' in text
-        and "NOT FOUND, and needed: rudder" in text
-    )
+def test_a_folder_of_one_table_a_topic_goes_in_with_its_four_azimuths(data):
+    folder = data / "milliampere" / "maneuvering1"
+    text = suggestion([folder], {})
+    v = read_voyage(folder, parse_map(tomllib.loads(text), "proposed"))
+    assert 'file = "nav_estimate.csv"' in text and 'unit = "quaternion"' in text
+    assert v.has(*(f"actuator_{i}.{last}" for i in (1, 2, 3, 4) for last in ("angle_deg", "rate_rpm")))

@@ -82,3 +82,9 @@ def test_the_calibrated_boat_is_nearer_and_its_thrusters_are_alike(folder):
 def test_on_a_run_with_nothing_wrong_nothing_is_said_to_be_missing(folder):
     said = json.loads((folder / "later.json").read_text())
     assert said["verdict"] != "missing" and said["missing"] == []
+
+
+def test_the_proposed_map_names_both_thrusters(folder):
+    text = (folder / "proposed.toml").read_text()
+    assert '"port.pwm_us" = "thr_left"' in text and '"starboard.pwm_us" = "thr_right"' in text
+    assert 'unit = "rad/s"' in text and "NOT FOUND" not in text

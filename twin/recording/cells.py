@@ -94,16 +94,27 @@ def degrees_of_text(table: Table, key: Key) -> np.ndarray:
 
 def one_angle(table: Table, key: Key, row: int, text: str) -> float:
     """One of them [deg], negative to the south and west. DataError: it is not degrees and minutes."""
-    parts = [float(p.replace(",", ".")) for p in PARTS.findall(text)]
-    if not text.strip() or not parts:
-        return np.nan
-    if len(parts) > 3 or any(p >= 60.0 for p in parts[1:]):
+    try:
+        return degrees_of(text)
+    except ValueError:
         raise DataError(
             f"{table.path}: line {table.lines[row]}, column {key!r}: {text[:40]!r} is not degrees and "
             "minutes (57 30.123 N)."
-        )
+        ) from None
+
+
+def degrees_of(text: str) -> float:
+    """Degrees, minutes and seconds as text [deg]: the sign by the letter where there is one, else by the
+    mark in front; NaN of a text without digits. ValueError: minutes or seconds are 60 or more."""
+    parts = [float(p.replace(",", ".")) for p in PARTS.findall(text)]
+    if not parts:
+        return np.nan
+    if len(parts) > 3 or any(p >= 60.0 for p in parts[1:]):
+        raise ValueError(text)
     size = sum(p / 60.0**k for k, p in enumerate(parts))
-    return -size if set(text) & NEGATIVE else size
+    letters = set(text.upper()) & set("NSEW")
+    south = letters <= set("SW") if letters else text.lstrip().startswith("-")
+    return -size if south else size
 
 
 WAVES = ((np.sin, 1), (np.cos, 1), (np.sin, 2), (np.cos, 2))  # of B, C, D and E

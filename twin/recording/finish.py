@@ -69,6 +69,15 @@ def with_time(raw: Raw) -> None:
         raw.columns = {name: x[keep] for name, x in raw.columns.items()}
 
 
+def tells_why(note: str, missing: list[str]) -> bool:
+    """Whether a note tells of what is missing, or of what was left out."""
+    return (
+        note.startswith(("not used", "left out"))
+        or any(name in note for name in missing)
+        or "blanked" in note
+    )
+
+
 def require(raw: Raw, controls: bool = True) -> None:
     """Heading, controls, and position or velocity must hold samples; DataError names all that do not."""
     parts = any(present(raw.columns, name) for name in of_actuators(raw.columns))
@@ -78,7 +87,9 @@ def require(raw: Raw, controls: bool = True) -> None:
         missing.append(f"{' and '.join(CHART)} (or {' and '.join(PLACES)}, or {' and '.join(FRAMED)})")
     if missing:
         empty = [n for n in raw.columns if not present(raw.columns, n)]
-        said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + [n[:200] for n in raw.notes[:8]]
+        said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + [
+            n[:200] for n in raw.notes if tells_why(n, missing)
+        ][:4]
         steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(

@@ -30,7 +30,7 @@ def own_names(path: Path, names: Sequence[str]) -> tuple[Map, tuple[str, ...]]:
     if not times:
         raise DataError(
             f"{path}: has no column time_s or time_utc. {'; '.join(unused)[:300] or 'Its header is blank'}. "
-            "Rename it, or say in a map which column is the time (--map)."
+            "Rename it, or say in a map which column is the time (--map); --suggest-map writes one."
         )
     time = TimeColumn(times[0], "iso" if times[0] == "time_utc" else "s")
     return Map(time=time, columns=columns), unused

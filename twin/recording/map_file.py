@@ -40,6 +40,7 @@ KINDS: dict[str, tuple[type, ...]] = {
     "decimal": (str,),
     "encoding": (str,),
     "missing": (list,),
+    "long": (list,),
     "column": (str, int, list),
     "unit": (str,),
     "format": (str,),
@@ -85,6 +86,10 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     layout: Layout = build(Layout, data.get("file", {}), f"{where}: [file]")
     one_of(layout.separator, (None, *SEPARATORS), f"{where}: [file] separator")
     one_of(layout.decimal, (None, ".", ","), f"{where}: [file] decimal")
+    if len(layout.long) not in (0, 2):
+        raise SettingsError(
+            f"{where}: [file] long names two columns: that of the names and that of the values."
+        )
     if not number(scale, f"{where}: [scale] froude") > 0.0:
         raise SettingsError(
             f"{where}: [scale] froude = {scale} must be positive (ship length / model length)."
@@ -164,7 +169,7 @@ def places_agree(columns: Mapping[str, Column], constant: Mapping[str, float], w
 def time_column(entry: Any, where: str) -> TimeColumn:
     """The entry `[time]`. SettingsError: its step is not positive."""
     out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
-    one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
+    one_of(out.unit, (*UNITS["s"], "iso", "excel"), f"{where}: [time] unit")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
         raise SettingsError(
             f"{where}: [time] rebuild = {as_given(out.rebuild)} must be true, false or a step in seconds."

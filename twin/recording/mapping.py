@@ -25,6 +25,7 @@ class Layout:
     separator: str | None = None  # "," ";" "tab" "whitespace"
     decimal: str | None = None  # "." ","
     encoding: str | None = None
+    long: tuple[str, ...] = ()  # a row a reading: the columns of its name and its value
     missing: tuple[str, ...] = ()  # cells that mean "no sample", as written
 
 

@@ -100,6 +100,12 @@ def table_of(path: Path, by: Map, packed: Packed | None) -> Table:
     is_text, entries = (by.time or TimeColumn()).is_text, list(by.columns.values())
     words = list(dict.fromkeys([*(stamps_of(by) if is_text else ()), *text_keys(entries)]))
     numbers = list(dict.fromkeys([*(() if is_text else stamps_of(by)), *number_keys(entries)]))
+    if by.layout.long:
+        words, numbers = (
+            [*dict.fromkeys([*words, by.layout.long[0]])],
+            [by.layout.long[1], *(() if is_text else stamps_of(by))],
+        )
+        entries = []
     if packed:
         return read_packed(packed, numbers, words, optional_keys(entries))
     return read_table(path, by.layout, numbers, words, optional_keys(entries))

@@ -19,6 +19,7 @@ from twin.recording.formats.choose import Sources, chosen
 from twin.recording.formats.series_table import as_columns
 from twin.recording.formats.zipped import is_zip, unpacked
 from twin.recording.headers import column_names, own_names
+from twin.recording.long_table import widened
 from twin.recording.map_file import parse_map
 from twin.recording.mapping import PLACES, Column, Map, TimeColumn
 from twin.recording.place import CHART, FRAMED
@@ -101,10 +102,13 @@ def from_text(path: Path, by: Map | None, packed: Packed | None = None) -> Raw:
     """The samples of a table, text or packed, through a map."""
     by, unused = (by, ()) if by else own_names(path, packed.names if packed else column_names(path))
     table = table_of(path, by, packed)
+    clock = read_clock(path, table, stamps_of(by), by.time or TimeColumn())
+    if by.layout.long:
+        table, clock = widened(table, clock, by.layout.long, number_keys(by.columns.values()))
     return through(
         path,
         table,
-        read_clock(path, table, stamps_of(by), by.time or TimeColumn()),
+        clock,
         by,
         [*table.notes, *unused],
         {},

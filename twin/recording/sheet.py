@@ -14,6 +14,7 @@ from twin.recording.formats.lines import Unpacked, opened
 from twin.recording.mapping import SEPARATORS, Key, Layout
 
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d*(?:[eE][-+]?\d+)?")
+COMMENT = ("#", "%", "//")  # what may stand in front of a line of names
 Row = tuple[int, list[str]]  # line in the file, cells
 
 
@@ -33,6 +34,7 @@ class Sheet:
         self.head_lines = first[0]  # lines up to the one with the names
         self.layout = replace(layout, separator=SEPARATORS.get(layout.separator or find_separator(first[1])))
         head = cells(first[1], self.layout)
+        head = head[1:] if head[0] in COMMENT and self.layout.separator == " " else head  # "# t x y"
         self.names = [c.strip() for c in head] if layout.header else []
         self.width = len(head)
         self._lines = lines

@@ -17,6 +17,8 @@ from twin.recording.units import UNITS
 EPOCH_S = 1e8  # a number of seconds above this counts from 1970, not from the start of the voyage
 FINER = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 DAY_S = 86400.0
+EXCEL_1970 = 25569.0  # days from 30 December 1899 to 1 January 1970
+OF_A_DATE = ("%d", "%j", "%m", "%b", "%B", "%Y", "%y", "%s", "%c", "%x", "%D", "%F")
 FRACTION = re.compile(r"^(.*:\d\d)[.,](\d{1,9})(\D.*)?$")  # up to the seconds, their fraction, a zone
 
 
@@ -34,6 +36,8 @@ def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Time
 
     A number of seconds that only fits our century as milliseconds, microseconds or nanoseconds since 1970
     is read so, and a note says it; DataError when no unit gives a date."""
+    if spec.unit == "excel":
+        stamps, spec = (stamps - EXCEL_1970) * DAY_S, replace(spec, unit="s")
     time_s = stamps * UNITS["s"][spec.unit]
     finite = time_s[np.isfinite(time_s)]
     if not finite.size or abs(finite[0]) <= EPOCH_S:
@@ -64,11 +68,24 @@ def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: 
     """ISO-8601 or strptime stamps, in the file's lines (N,); without a zone they are taken as UTC. The
     clock is in [s]. DataError: they begin after 2100."""
     seconds = moments(path, lines, stamps, spec)
+    if spec.format and not any(part in spec.format for part in OF_A_DATE):
+        return TimeAxis(past_midnights(seconds))
     finite = seconds[np.isfinite(seconds)]
     if finite.size and finite[0] > LATEST_S:
         first = stamps[int(np.flatnonzero(np.isfinite(seconds))[0])]
         raise DataError(f"{path}: its first time stamp, {first!r}, lies after 2100. Correct the stamps.")
     return TimeAxis(seconds - finite[0], utc(finite[0])) if finite.size else TimeAxis(seconds)
+
+
+def past_midnights(seconds: np.ndarray) -> np.ndarray:
+    """Times of day (N,) [s] as seconds since the first midnight: where they fall by most of a day, the next
+    day begins."""
+    good = np.flatnonzero(np.isfinite(seconds))
+    if not good.size:
+        return seconds
+    out, days = seconds.copy(), np.cumsum(np.r_[0, np.diff(seconds[good]) < -DAY_S / 2.0])
+    out[good] = seconds[good] - DAY_S * np.floor(seconds[good[0]] / DAY_S) + DAY_S * days
+    return out
 
 
 def moments(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> np.ndarray:

@@ -8,7 +8,7 @@ DEG_PER_RAD = 180.0 / pi
 KNOT_MPS = 1852.0 / 3600.0
 
 UNITS: dict[str, dict[str, float]] = {
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "d": 86400.0},
     "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "nmi": 1852.0},
     "mps": {"m/s": 1.0, "kn": KNOT_MPS, "km/h": 1.0 / 3.6, "ft/s": 0.3048},
     "deg": {"deg": 1.0, "rad": DEG_PER_RAD, "cdeg": 1e-2, "degE7": 1e-7},

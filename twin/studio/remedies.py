@@ -9,8 +9,8 @@ import tomllib
 from typing import Any
 
 from twin.recording.checks.check_result import Check
+from twin.recording.map_toml import toml
 from twin.recording.mapping import NAMES
-from twin.recording.suggest_map import toml
 
 SURGE, SWAY, HEADING = "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"
 SPEEDS = (SURGE, SWAY)

@@ -56,12 +56,9 @@ def duration(view: VoyageView) -> Check:
     """Long enough, and with enough going on, to judge a model by."""
     name, seconds = "duration", view.voyage.duration_s
     sailed = float(np.nansum(np.abs(view.velocity)) * view.step_s)
-    rudder = float(np.nanstd(view.voyage["rudder_angle_deg"]))
-    calm = (
-        (" The rudder hardly moves: nothing about turning can be learned from it.")
-        if rudder < STEADY_RUDDER_DEG
-        else ""
-    )
+    steered = view.voyage["rudder_angle_deg"]
+    still = np.isfinite(steered).any() and float(np.nanstd(steered)) < STEADY_RUDDER_DEG
+    calm = " The rudder hardly moves: nothing about turning can be learned from it." * bool(still)
     if view.ship is not None:
         lengths = sailed / float(view.ship.L_pp)
         saw = f"{as_given(seconds, 4)} s, {lengths:.0f} ship lengths"

@@ -15,13 +15,16 @@ from twin.recording.formats import (
     binary_tables,
     canboat_json,
     iso19848,
+    json_records,
     keelson,
     nmea0183,
     nmea2000,
+    px4,
     ros,
     signalk,
 )
 from twin.recording.formats.lines import head, head_lines
+from twin.recording.formats.other_files import refuse_others
 from twin.recording.formats.signals import Signals
 
 MCAP = b"\x89MCAP0\r\n"
@@ -47,7 +50,7 @@ FORMATS: tuple[Format, ...] = (
     Format("feather", binary_tables.FEATHER, binary_tables.looks_feather, table=binary_tables.Feather),
     Format("excel", binary_tables.EXCEL, binary_tables.looks_excel, table=binary_tables.Excel),
     Format("ros", ros.SAYS, ros.looks, ros.read),
-    Format("ulog", autopilots.ULOG, autopilots.looks_ulog, autopilots.read_ulog),
+    Format("ulog", px4.ULOG, px4.looks_ulog, px4.read_ulog),
     Format("dataflash", autopilots.FLASH, autopilots.looks_flash, autopilots.read_flash),
     Format("tlog", autopilots.TLOG, autopilots.looks_tlog, autopilots.read_tlog),
     Format("nmea2000", "an NMEA 2000 log", nmea2000.looks, nmea2000.read),
@@ -56,13 +59,15 @@ FORMATS: tuple[Format, ...] = (
     Format("iso19848", iso19848.SAYS, iso19848.looks, iso19848.read),
     Format("ais", ais.SAYS, ais.looks, ais.read),
     Format("nmea0183", nmea0183.SAYS, nmea0183.looks, nmea0183.read),
+    Format("json", json_records.JSON, json_records.looks_json, table=json_records.JsonRecords),
     Format("keelson", keelson.SAYS, never, keelson.read),  # an MCAP: told by what it holds
 )
 BY_NAME = {f.name: f for f in FORMATS}
 
 
 def recognised(path: Path) -> Format | None:
-    """The format of a file; None: text columns, or the twin's own log."""
+    """The format of a file; None: text columns, or the twin's own log. DataError: it is of a kind that is
+    known and not read."""
     if ros.is_folder(path):
         return BY_NAME["ros"]
     if path.is_dir():
@@ -73,7 +78,10 @@ def recognised(path: Path) -> Format | None:
     if start.startswith(b"SQLite format 3"):
         return BY_NAME["ros"]
     lines = head_lines(start)
-    return next((f for f in FORMATS if f.looks(lines, start)), None)
+    found = next((f for f in FORMATS if f.looks(lines, start)), None)
+    if found is None:
+        refuse_others(path, start)
+    return found
 
 
 def of_mcap(path: Path) -> Format | None:

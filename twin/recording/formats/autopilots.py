@@ -1,18 +1,19 @@
-"""Logs of autopilots: ArduPilot DataFlash (.BIN) and MAVLink telemetry (.tlog) by pymavlink, PX4 ULog by
-pyulog."""
+"""Logs of ArduPilot and of any autopilot that speaks MAVLink: DataFlash (.BIN) and telemetry (.tlog), by
+pymavlink."""
 
 from collections.abc import Callable, Iterator
-from math import degrees
+from contextlib import redirect_stdout
+from io import StringIO
+from math import atan2, degrees
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from twin.errors import DataError
-from twin.recording.formats.extra import library, one_line
+from twin.recording.formats.autopilot_settings import by_function, setting
+from twin.recording.formats.extra import library, one_line, silent
 from twin.recording.formats.signals import Signals
 
-FLASH, TLOG, ULOG = "an ArduPilot DataFlash log", "a MAVLink telemetry log", "a PX4 ULog"
+FLASH, TLOG = "an ArduPilot DataFlash log", "a MAVLink telemetry log"
 Part = tuple[str, str, float]
 HEADING, RATE, ROLL = "heading_true_north_deg", "yaw_rate_degps", "roll_deg"
 NORTH, EAST = "velocity_north_mps", "velocity_east_mps"
@@ -27,11 +28,6 @@ def looks_flash(lines: list[str], start: bytes) -> bool:
 def looks_tlog(lines: list[str], start: bytes) -> bool:
     """A stamp of eight bytes [us since 1970] in front of a MAVLink packet, twice."""
     return len(start) > 16 and start[8] in (0xFD, 0xFE) and 1e15 < int.from_bytes(start[:8], "big") < 5e15
-
-
-def looks_ulog(lines: list[str], start: bytes) -> bool:
-    """Whether a file starts as a ULog does."""
-    return start.startswith(b"ULog\x01\x12\x35")
 
 
 def ekf(m: Any) -> Iterator[Part]:
@@ -57,26 +53,66 @@ def att(m: Any) -> Iterator[Part]:
 
 
 def outputs(m: Any) -> Iterator[Part]:
-    """The servo outputs as they are written, of no channel yet."""
-    for i in range(1, 9):
-        if hasattr(m, f"C{i}"):
-            yield f"C{i}", "", float(getattr(m, f"C{i}"))
+    """The servo outputs as they are written [us], of no channel yet; early versions call them otherwise."""
+    for i in range(1, 15):
+        value = next((getattr(m, f"{c}{i}") for c in ("C", "Ch", "Chan") if hasattr(m, f"{c}{i}")), None)
+        if value is not None:
+            yield f"C{i}", "", float(value)
+
+
+def wind(m: Any) -> Iterator[Part]:
+    """Wind on the boat, and over ground where it is written."""
+    yield "speed", "apparent_wind_speed_mps", m.SpdA
+    yield "angle", "apparent_wind_angle_deg", m.DirA % 360.0
+    if hasattr(m, "SpdT") and hasattr(m, "DirT"):
+        yield "true_speed", "true_wind_speed_mps", m.SpdT
+        yield "direction", "true_wind_direction_deg", m.DirT % 360.0
+
+
+def turns(m: Any) -> Iterator[Part]:
+    """Rates of two sensors in one message, or of the one that the message names."""
+    if hasattr(m, "rpm1"):
+        yield "rpm1", "propeller_rate_rpm", m.rpm1
+        if m.rpm2 > 0.0:
+            yield "rpm2", "", m.rpm2
+    else:
+        yield "rpm", "propeller_rate_rpm" if getattr(m, "I", 0) == 0 else "", m.RPM
+
+
+def esc(m: Any) -> Iterator[Part]:
+    """The rate of one motor, by its controller."""
+    no = getattr(m, "Instance", getattr(m, "I", None))
+    no = int(m.get_type()[3:] or 1) - 1 if no is None else int(no)
+    yield f"motor{no + 1}", f"motor_{no + 1}.rate_rpm", float(m.RPM)
+
+
+def place(m: Any) -> Iterator[Part]:
+    """Position of the estimate."""
+    yield "latitude", "latitude_deg", m.Lat
+    yield "longitude", "longitude_deg", m.Lng
+
+
+def second_attitude(m: Any) -> Iterator[Part]:
+    """Heading and roll of the estimate that stands by."""
+    yield "yaw", HEADING, m.Yaw % 360.0
+    yield "roll", ROLL, m.Roll
 
 
 FLASHED: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]] = {
     "ATT": (0, att),
+    "AHR2": (4, second_attitude),
     "GPS": (0, gps),
+    "GPS2": (1, gps),
+    "POS": (1, place),
     "XKF1": (1, ekf),
     "NKF1": (2, ekf),
+    "EKF1": (3, ekf),
     "RCOU": (9, outputs),
     "IMU": (0, lambda m: iter([("rate", RATE, degrees(m.GyrZ))])),
-    "RPM": (0, lambda m: iter([("rpm1", "propeller_rate_rpm", m.rpm1)])),
-    "WIND": (
-        0,
-        lambda m: iter(
-            [("speed", "apparent_wind_speed_mps", m.SpdA), ("angle", "apparent_wind_angle_deg", m.DirA)]
-        ),
-    ),
+    "RPM": (0, turns),
+    "ESC": (0, esc),
+    **{f"ESC{i}": (0, esc) for i in range(1, 9)},
+    "WIND": (0, wind),
     "DPTH": (0, lambda m: iter([("depth", "water_depth_m", m.Depth)])),
 }
 
@@ -102,8 +138,36 @@ def raw_int(m: Any) -> Iterator[Part]:
 
 def servos(m: Any) -> Iterator[Part]:
     """The servo outputs as they are sent [us], of no channel yet."""
-    for i in range(1, 9):
-        yield f"servo{i}", "", float(getattr(m, f"servo{i}_raw", 0))
+    for i in range(1, 17):
+        if value := getattr(m, f"servo{i}_raw", 0):
+            yield f"servo{i}", "", float(value)
+
+
+def by_quaternion(m: Any) -> Iterator[Part]:
+    """Heading, roll [deg] and rate of turn [deg/s] of a quaternion from earth to body."""
+    w, x, y, z = m.q1, m.q2, m.q3, m.q4
+    yield "yaw", HEADING, degrees(atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))) % 360.0
+    yield "roll", ROLL, degrees(atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)))
+    yield "rate", RATE, degrees(m.yawspeed)
+
+
+def local(m: Any) -> Iterator[Part]:
+    """Position [m] and velocity [m/s] in the local frame, north and east."""
+    yield "north", "north_m", m.x
+    yield "east", "east_m", m.y
+    yield "vn", NORTH, m.vx
+    yield "ve", EAST, m.vy
+
+
+def escs(first: int) -> Callable[[Any], Iterator[Part]]:
+    """The rates of four motors, from `first` on; one that never turned is not there."""
+
+    def parts(m: Any) -> Iterator[Part]:
+        for i, rate in enumerate(m.rpm):
+            if rate:
+                yield f"motor{first + i}", f"motor_{first + i}.rate_rpm", float(rate)
+
+    return parts
 
 
 SENT: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]] = {
@@ -119,6 +183,18 @@ SENT: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]] = {
     ),
     "GPS_RAW_INT": (0, raw_int),
     "GLOBAL_POSITION_INT": (1, position_int),
+    "GPS2_RAW": (1, raw_int),
+    "ATTITUDE_QUATERNION": (1, by_quaternion),
+    "LOCAL_POSITION_NED": (2, local),
+    "VFR_HUD": (
+        3,
+        lambda m: iter(
+            [("heading", HEADING, m.heading % 360.0), ("speed", "speed_over_ground_mps", m.groundspeed)]
+        ),
+    ),
+    "ESC_TELEMETRY_1_TO_4": (0, escs(1)),
+    "ESC_TELEMETRY_5_TO_8": (0, escs(5)),
+    "WATER_DEPTH": (0, lambda m: iter([("depth", "water_depth_m", m.distance)])),
     "SERVO_OUTPUT_RAW": (9, servos),
     "RPM": (0, lambda m: iter([("rpm1", "propeller_rate_rpm", m.rpm1)])),
     "WIND": (
@@ -168,17 +244,15 @@ def collect(
 ) -> Signals:
     """All known messages; what the library cannot read ends the log there, and is said. DataError: nothing
     of it can be read."""
+    settings: dict[str, float] = {}
     try:
-        log = opened()
-        while (m := log.recv_msg()) is not None:
-            kind = m.get_type()
-            source = source_of(m) if kind in known else None
-            if source is None:
-                out.skipped["messages of other kinds"] += 1
-                continue
-            rank, parts = known[kind]
-            for part, quantity, value in parts(m):
-                out.put(f"{kind}{source}.{part}", source, quantity, float(m._timestamp), float(value), rank)
+        with silent(), redirect_stdout(StringIO()):
+            log = opened()
+            while (m := log.recv_msg()) is not None:
+                if m.get_type() in ("PARM", "PARAM_VALUE"):
+                    setting(settings, m)
+                else:
+                    keep(out, m, known, source_of)
     except MemoryError:
         raise
     except Exception as error:
@@ -187,105 +261,28 @@ def collect(
                 f"{out.path}: this is {out.says}, and it cannot be read: {one_line(error)}."
             ) from None
         out.notes.append(f"it is damaged and was read up to there: {one_line(error)}")
+    by_function(out, settings)
+    out.without_strays()
     return out.finish()
 
 
-def read_ulog(path: Path) -> Signals:
-    """Series named topic, instance and part (`vehicle_attitude0.heading`), on the UTC of the receiver
-    where it knows one. DataError: it cannot be read."""
-    module, out = library("pyulog", path, ULOG), Signals(path, ULOG)
+def keep(
+    out: Signals,
+    m: Any,
+    known: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]],
+    source_of: Callable[[Any], str | None],
+) -> None:
+    """One message's values into their series; one of another kind, or with other parts, is counted."""
+    kind = m.get_type()
+    source = source_of(m) if kind in known else None
+    if source is None:
+        out.skipped["messages of other kinds"] += 1
+        return
+    rank, parts = known[kind]
     try:
-        log = module.ULog(str(path), list(TOPICS))
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise DataError(f"{path}: this is {ULOG}, and it cannot be read: {one_line(error)}.") from None
-    start_s = utc_of_zero(log)
-    for topic in log.data_list:
-        rank, parts = TOPICS[topic.name]
-        t = topic.data["timestamp"].astype(float) * 1e-6 + start_s
-        for part, quantity, values in parts(topic.data):
-            series = out.of(f"{topic.name}{topic.multi_id}.{part}", str(topic.multi_id), quantity, rank)
-            series.times.frombytes(t.astype(float).tobytes())
-            series.values.frombytes(np.asarray(values, float).tobytes())
-    if getattr(log, "file_corruption", False):
-        out.notes.append("it is damaged; what could be read was read")
-    return out.finish()
-
-
-def utc_of_zero(log: Any) -> float:
-    """UTC [s] of the log's zero, from the receiver; 0 when it never knew."""
-    for topic in log.data_list:
-        if "time_utc_usec" in topic.data:
-            known = topic.data["time_utc_usec"] > 1e15
-            if known.any():
-                return (
-                    float(
-                        np.median(
-                            topic.data["time_utc_usec"][known].astype(float) - topic.data["timestamp"][known]
-                        )
-                    )
-                    * 1e-6
-                )
-    return 0.0
-
-
-def ulog_attitude(d: Any) -> Iterator[tuple[str, str, Any]]:
-    """Heading and roll [deg] of the quaternion, from earth (NED) to body."""
-    w, x, y, z = (d[f"q[{i}]"].astype(float) for i in range(4))
-    yield "heading", HEADING, np.degrees(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))) % 360.0
-    yield "roll", ROLL, np.degrees(np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)))
-
-
-def ulog_gps(d: Any) -> Iterator[tuple[str, str, Any]]:
-    """Position and velocity of a receiver; NaN where it has no fix."""
-    fixed = d["fix_type"] >= 2 if "fix_type" in d else np.ones(d["timestamp"].size, bool)
-    lat, lon = (
-        (d["latitude_deg"], d["longitude_deg"]) if "latitude_deg" in d else (d["lat"] * 1e-7, d["lon"] * 1e-7)
-    )
-    yield "latitude", "latitude_deg", np.where(fixed, lat, np.nan)
-    yield "longitude", "longitude_deg", np.where(fixed, lon, np.nan)
-    yield "vn", NORTH, np.where(fixed, d["vel_n_m_s"], np.nan)
-    yield "ve", EAST, np.where(fixed, d["vel_e_m_s"], np.nan)
-
-
-def ulog_local(d: Any) -> Iterator[tuple[str, str, Any]]:
-    """Position [m] and velocity [m/s] in the local frame, north and east."""
-    yield "north", "north_m", d["x"]
-    yield "east", "east_m", d["y"]
-    yield "vn", NORTH, d["vx"]
-    yield "ve", EAST, d["vy"]
-
-
-def ulog_wind(d: Any) -> Iterator[tuple[str, str, Any]]:
-    """True wind: its speed [m/s], and where it comes from [deg]."""
-    north, east = d["windspeed_north"].astype(float), d["windspeed_east"].astype(float)
-    yield "speed", "true_wind_speed_mps", np.hypot(north, east)
-    yield "from", "true_wind_direction_deg", np.degrees(np.arctan2(-east, -north)) % 360.0
-
-
-TOPICS: dict[str, tuple[int, Callable[[Any], Iterator[tuple[str, str, Any]]]]] = {
-    "vehicle_attitude": (0, ulog_attitude),
-    "vehicle_gps_position": (0, ulog_gps),
-    "sensor_gps": (1, ulog_gps),
-    "vehicle_local_position": (1, ulog_local),
-    "wind": (0, ulog_wind),
-    "wind_estimate": (1, ulog_wind),
-    "vehicle_angular_velocity": (0, lambda d: iter([("rate", RATE, np.degrees(d["xyz[2]"].astype(float)))])),
-    "rpm": (
-        0,
-        lambda d: iter(
-            [
-                (
-                    "rpm",
-                    "propeller_rate_rpm",
-                    d.get("rpm_estimate", d.get("indicated_frequency_rpm", np.nan * d["timestamp"])),
-                )
-            ]
-        ),
-    ),
-    "actuator_outputs": (
-        9,
-        lambda d: ((f"output{i}", "", d[f"output[{i}]"]) for i in range(8) if f"output[{i}]" in d),
-    ),
-}
+        values = list(parts(m))
+    except (AttributeError, TypeError, ValueError):  # another version names its parts otherwise
+        out.skipped[f"{kind} messages that hold other parts"] += 1
+        return
+    for part, quantity, value in values:
+        out.put(f"{kind}{source}.{part}", source, quantity, float(m._timestamp), float(value), rank)

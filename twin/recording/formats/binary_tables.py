@@ -4,7 +4,7 @@ Numbers come as floats, moments as seconds since 1970, words as text.
 """
 
 from collections.abc import Iterator, Sequence
-from datetime import UTC, date, datetime
+from datetime import UTC, date, datetime, time
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +12,14 @@ import numpy as np
 
 from twin.errors import DataError, TwinError
 from twin.recording.formats.extra import library, one_line
+from twin.recording.formats.header_rows import HeaderRows, header_rows, own_labels
 from twin.recording.formats.lines import head
+from twin.recording.formats.name_words import unit_in
 
 PARQUET, FEATHER, EXCEL = "a Parquet table", "a Feather (Arrow) table", "an Excel workbook"
 Piece = dict[str, Any]  # column: float array, or a list of words
+
+LOOKED_AT = 200  # rows of a sheet in which its header is looked for
 
 
 def looks_parquet(lines: list[str], start: bytes) -> bool:
@@ -40,6 +44,7 @@ class Packed:
 
     def __init__(self, path: Path, says: str):
         self.path, self.says = path, says
+        self.units: dict[str, str] = {}  # by column, where a line under the names states them
         try:
             self.names: list[str] = self._open()
         except (TwinError, MemoryError):
@@ -98,31 +103,35 @@ class Feather(Packed):
 
 
 class Excel(Packed):
-    """The first sheet that has a header and rows."""
+    """The sheet with most rows of numbers; lines above its names are left out, one of units is read as such,
+    one of groups tells columns of one name apart."""
 
     def _open(self) -> list[str]:
         book = library("openpyxl", self.path, self.says).load_workbook(
             self.path, read_only=True, data_only=True
         )
+        best: tuple[int, list[Any], HeaderRows] | None = None
         for sheet in book.worksheets:
-            rows = sheet.iter_rows(values_only=True)
-            head = next((row for row in rows if row and any(c is not None for c in row)), None)
-            if head is not None and sum(isinstance(c, str) for c in head) >= 2:
-                self._rows = rows
-                return [str(c).strip() if c is not None else "" for c in head]
-        raise DataError(f"{self.path}: no sheet has a line of column names with rows under it.")
+            rows = [row for row in sheet.iter_rows(values_only=True) if any(c is not None for c in row)]
+            found = header_rows([[as_text(c) for c in row] for row in rows[:LOOKED_AT]])
+            if found and (best is None or len(rows) - found.rows_at > best[0]):
+                best = len(rows) - found.rows_at, rows, found
+        if best is None:
+            raise DataError(f"{self.path}: no sheet has a line of column names with rows under it.")
+        _, rows, header = best
+        self._rows = rows[header.rows_at :]
+        names = own_labels([as_text(c) for c in rows[header.names_at]], header.groups)
+        self.units = {
+            n: unit_in(u.strip("[]()")) for n, u in zip(names, header.units, strict=False) if n and u
+        }
+        return names
 
     def _pieces(self, names: Sequence[str]) -> Iterator[Piece]:
         at = {name: self.names.index(name) for name in names}
-        held: dict[str, list[Any]] = {name: [] for name in names}
-        count = 0
-        for row in self._rows:
-            if not any(c is not None for c in row):
-                continue
-            for name, i in at.items():
-                held[name].append(row[i] if i < len(row) else None)
-            count += 1
-        if count:
+        held: dict[str, list[Any]] = {
+            name: [row[i] if i < len(row) else None for row in self._rows] for name, i in at.items()
+        }
+        if self._rows:
             yield {name: cells(values) for name, values in held.items()}
 
 
@@ -148,10 +157,29 @@ def plain(path: Path, name: str, column: Any) -> Any:
 
 
 def cells(values: list[Any]) -> Any:
-    """Cells of a sheet as floats when all of them are numbers, moments or empty; else as words."""
-    if all(c is None or isinstance(c, int | float | datetime | date) for c in values):
+    """Cells of a sheet as floats when all of them are numbers, moments or empty; else as words (days without
+    a time of day too: a column of clock times may stand beside them)."""
+    filled = [c for c in values if c is not None]
+    days = bool(filled) and all(is_day(c) for c in filled)
+    if not days and all(isinstance(c, int | float | datetime | date) for c in filled):
         return np.array([number(c) for c in values])
-    return ["" if c is None else (c.isoformat() if isinstance(c, datetime) else str(c)) for c in values]
+    return [as_text(c) for c in values]
+
+
+def is_day(cell: Any) -> bool:
+    """Whether a cell is a day, without a time of it."""
+    if isinstance(cell, datetime):
+        return (cell.hour, cell.minute, cell.second, cell.microsecond) == (0, 0, 0, 0)
+    return isinstance(cell, date)
+
+
+def as_text(cell: Any) -> str:
+    """A cell as text: a day and a moment as ISO 8601, an empty cell as nothing."""
+    if cell is None:
+        return ""
+    if is_day(cell):
+        return str(cell.isoformat()[:10])
+    return cell.isoformat() if isinstance(cell, datetime | time) else str(cell).strip()
 
 
 def number(cell: Any) -> float:

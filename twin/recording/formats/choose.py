@@ -78,6 +78,9 @@ def chosen(signals: Signals, sources: Sources) -> SourceChoice:
     for name in BY_NAME:
         if name not in (*BODY, *CHART, HEADING) and (found := best(signals, name, sources, notes)):
             columns[name] = found.name
+    for name in dict.fromkeys(s.quantity for s in signals.series.values() if "." in s.quantity):
+        if found := best(signals, name, sources, notes):
+            columns[name] = found.name
     columns |= heading(signals, sources, notes)
     columns |= pair(signals, PLACE, PLACE, sources, notes, {}) or pair(
         signals, CHART, CHART, sources, notes, {}

@@ -10,7 +10,7 @@ from google.protobuf.message import DecodeError
 
 from twin.live.keelson import messages
 from twin.live.keelson.decode import EARLIEST_S, LATEST_S, Decoder
-from twin.live.keelson.topics import BY_SUBJECT, KNOT, address, is_own
+from twin.live.keelson.topics import BY_SUBJECT, FLOAT, KNOT, address, is_own
 from twin.live.log.mcap_read import McapReader
 from twin.live.signals.readings import WORDS, Reading
 from twin.live.signals.sentinels import is_no_position
@@ -23,6 +23,8 @@ BESIDE: dict[str, tuple[str, float]] = {
     "course_over_ground_deg": ("course_over_ground_deg", 1.0),
     "heading_magnetic_deg": ("heading_magnetic_deg", 1.0),
     "magnetic_variation_deg": ("magnetic_variation_deg", 1.0),
+    "rate_of_turn_degpm": ("yaw_rate_degps", 1.0 / 60.0),
+    "rate_of_turn_degps": ("yaw_rate_degps", 1.0),
     "engine_rate_rpm": ("engine_rate_rpm", 1.0),
     "propeller_pitch_pct": ("propeller_pitch_pct", 1.0),
     "propeller_pitch_rpm": ("propeller_pitch_pct", 1.0),
@@ -51,7 +53,7 @@ def read(path: Path) -> Signals:
                     )
                 elif result.channel:
                     out.skipped[f"{result.channel}, {WORDS[result.quality]}"] += 1
-        elif place.subject in BESIDE:
+        elif place.subject in BESIDE or message.type_name == FLOAT:
             scalar(out, place.subject, place.source, message.data)
         else:
             other[place.subject] = other.get(place.subject, 0) + 1
@@ -84,7 +86,7 @@ def fix(out: Signals, source: str, data: bytes) -> None:
 def scalar(out: Signals, subject: str, source: str, data: bytes) -> None:
     """One message of a subject that has no channel of its own; what cannot be decoded, or has no sound
     stamp, is counted."""
-    quantity, scale = BESIDE[subject]
+    quantity, scale = BESIDE.get(subject, ("", 1.0))
     try:
         message = messages.Float.FromString(data)
     except DecodeError:

@@ -1,4 +1,5 @@
-"""NMEA 2000 as it is recorded: candump, canboat's text, Actisense's text and bytes, Yacht Devices' text.
+"""NMEA 2000 as it is recorded: candump, canboat's text, Actisense's text and bytes, Yacht Devices' text,
+sentences of NMEA 0183 around it.
 
 Every form is one function from a line to (stamp, group, source, bytes, whether those are a whole message). A
 series is named group, source, part (`127250.52.heading_true`); two sources of a group stay apart.
@@ -11,6 +12,7 @@ from typing import NamedTuple
 
 from twin.recording.formats.lines import head, head_lines, numbered, opened
 from twin.recording.formats.nmea2000_pgns import AIS, FAST, GROUPS, FastPackets
+from twin.recording.formats.nmea2000_wrapped import wrapped
 from twin.recording.formats.recorder_stamps import Stamp
 from twin.recording.formats.signals import Signals
 
@@ -83,6 +85,12 @@ def actisense(line: str, stamp: Stamp) -> Frame | None:
     )
 
 
+def in_sentence(line: str, stamp: Stamp) -> Frame | None:
+    """A message inside a sentence of NMEA 0183; None: it is none."""
+    found = wrapped(line, stamp)
+    return Frame(*found) if found else None
+
+
 def _bytes(text: str | None) -> bytes:
     text = (text or "").replace(" ", "")
     return bytes.fromhex(text[: len(text) // 2 * 2])
@@ -93,6 +101,7 @@ FORMS: tuple[tuple[str, Callable[[str, Stamp], Frame | None]], ...] = (
     ("an NMEA 2000 log as canboat writes it", canboat),
     ("an NMEA 2000 log of a Yacht Devices gateway", ydwg),
     ("an NMEA 2000 log of Actisense", actisense),
+    ("an NMEA 2000 log in sentences of NMEA 0183", in_sentence),
 )
 NGT_SAYS = "an NMEA 2000 recording of an Actisense NGT (bytes)"
 

@@ -210,11 +210,31 @@ def xdr(f: Fields) -> Iterator[Part]:
             yield from one("roll", "roll_deg", number(f, i + 1))
 
 
+def shr(f: Fields) -> Iterator[Part]:
+    """PASHR: true heading and roll of an inertial unit."""
+    if letter(f, 3) == "T":
+        yield from one("heading", HEADING, number(f, 2))
+        yield from one("roll", "roll_deg", number(f, 4))
+
+
+def trd(f: Fields) -> Iterator[Part]:
+    """TRD: what a thruster does: its rate or share of full, and its angle, of no channel yet."""
+    no = letter(f, 1) or "0"
+    if letter(f, 3) in ("R", "P"):
+        rate = letter(f, 3) == "R"
+        yield from one(
+            f"thruster{no}_{'rpm' if rate else 'command'}", "", number(f, 2), 1.0 if rate else 0.01
+        )
+    if letter(f, 5) in ("P", "D"):
+        yield from one(f"thruster{no}_pitch", "", number(f, 4))
+    yield from one(f"thruster{no}_angle", "", number(f, 6))
+
+
 SENTENCES: dict[str, tuple[int, Callable[[Fields], Iterable[Part]]]] = {
     "RMC": (1, rmc), "GGA": (0, gga), "GNS": (0, gns), "GLL": (2, gll), "VTG": (0, vtg), "HDT": (0, hdt),
     "THS": (0, ths), "HDG": (0, hdg), "HDM": (1, hdm), "VHW": (3, vhw), "VBW": (1, vbw), "ROT": (0, rot),
     "RSA": (0, rsa), "RPM": (0, rpm), "MWV": (0, mwv), "MWD": (0, mwd), "VWR": (1, vwr), "DPT": (1, dpt),
-    "DBT": (2, dbt), "DBS": (0, dbt), "XDR": (0, xdr),
+    "DBT": (2, dbt), "DBS": (0, dbt), "XDR": (0, xdr), "SHR": (1, shr), "TRD": (9, trd),
 }  # fmt: skip
 """{sentence: (rank among sentences of the same quantity, the fields it gives)}."""
 CLOCKS = {

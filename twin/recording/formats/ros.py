@@ -45,7 +45,12 @@ def read(path: Path) -> Signals:
         raise
     except Exception as error:
         if not out.series:
-            raise DataError(f"{path}: this is {SAYS}, and it cannot be read: {one_line(error)}.") from None
+            mend = " `rosbag reindex` or `ros2 bag reindex` mends what was cut off." * (
+                "index" in str(error).lower()
+            )
+            raise DataError(
+                f"{path}: this is {SAYS}, and it cannot be read: {one_line(error)}.{mend}"
+            ) from None
         out.notes.append(f"it is damaged and was read up to there: {one_line(error)}")
     return out.finish()
 

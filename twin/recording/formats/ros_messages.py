@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from math import atan2, degrees
 from typing import Any
 
+MOST_NUMBERS = 16  # of a list in a message of another type
 Part = tuple[str, str, float]
 DOWN = ("ned", "frd", "fsd")
 BODY = ("base", "body", "link", "fcu", "hull", "vessel", "imu")
@@ -119,9 +120,27 @@ def numbers(m: Any, depth: int = 3) -> Iterator[Part]:
             continue
         if isinstance(value, int | float):
             yield name, "", float(value)
-        elif depth and hasattr(value, "__dataclass_fields__"):
+        elif depth and hasattr(value, "__dataclass_fields__") and name != "layout":
             for inner, quantity, x in numbers(value, depth - 1):
                 yield f"{name}.{inner}", quantity, x
+        elif "covariance" not in name and is_short(value):
+            for i, x in enumerate(value):
+                yield f"{name}_{i + 1}", "", float(x)
+
+
+def is_short(value: Any) -> bool:
+    """Whether a value is a short list of numbers: of thrusters, motors, servos."""
+    if isinstance(value, str | bytes) or not hasattr(value, "__len__") or not 0 < len(value) <= MOST_NUMBERS:
+        return False
+    return all(isinstance(x, int | float) or getattr(x, "dtype", None) is not None for x in value)
+
+
+def joints(m: Any, frame: str) -> Iterator[Part]:
+    """Angles [rad], rates [rad/s] and efforts of joints, each by its name, of no channel yet."""
+    for i, name in enumerate(m.name):
+        for part, values in (("angle_rad", m.position), ("speed", m.velocity), ("effort", m.effort)):
+            if i < len(values):
+                yield f"{name}.{part}", "", float(values[i])
 
 
 MESSAGES: dict[str, tuple[int, Callable[[Any, str], Iterator[Part]]]] = {
@@ -129,6 +148,7 @@ MESSAGES: dict[str, tuple[int, Callable[[Any, str], Iterator[Part]]]] = {
     "nav_msgs/msg/Odometry": (0, odometry),
     "sensor_msgs/msg/Imu": (1, imu),
     "geometry_msgs/msg/QuaternionStamped": (0, quaternion),
+    "sensor_msgs/msg/JointState": (9, joints),
     "geometry_msgs/msg/PoseStamped": (1, pose),
     "geometry_msgs/msg/PoseWithCovarianceStamped": (1, pose),
     "geometry_msgs/msg/TwistStamped": (1, twist),

@@ -74,6 +74,7 @@ class Signals:
         self.series: dict[str, Series] = {}
         self.skipped: Counter[str] = Counter()
         self.notes: list[str] = []
+        self.settings: dict[str, dict[str, float]] = {}  # by series: what the vessel's settings say of it
         self._latest = -np.inf
 
     def of(self, name: str, source: str, quantity: str = "", rank: int = 0) -> Series:
@@ -102,6 +103,22 @@ class Signals:
                 "parts."
             )
         self._latest = max(self._latest, time_s)
+
+    def without_strays(self, farthest_s: float = 3.2e7, share: float = 0.01) -> None:
+        """Leaves out the few samples whose stamps lie more than a year from the middle of all: what a
+        damaged log was read as there. `farthest_s` [s]."""
+        stamps = [np.frombuffer(s.times) for s in self.series.values() if len(s)]
+        middle = float(np.median(np.concatenate(stamps))) if stamps else 0.0
+        away = sum(int(np.count_nonzero(~(np.abs(t - middle) <= farthest_s))) for t in stamps)
+        total = sum(t.size for t in stamps)
+        del stamps  # a view keeps an array from being replaced
+        if not 0 < away <= share * total:
+            return
+        for s in self.series.values():
+            t, x = np.array(s.times), np.array(s.values)
+            near = np.abs(t - middle) <= farthest_s
+            s.times, s.values = array("d", t[near].tobytes()), array("d", x[near].tobytes())
+        self.skipped["samples of another year"] += away
 
     def finish(self) -> "Signals":
         """The same, without empty series; DataError when nothing was found."""
