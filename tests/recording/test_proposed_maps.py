@@ -269,3 +269,11 @@ def test_a_stamp_years_ahead_is_one_line_and_takes_no_memory(tmp_path):
     columns = {"epoch": np.r_[1.7e9 + T[:-1], 1e10], **dict(list(AMERICAN.items())[1:])}
     text = suggestion([write(tmp_path / "far.csv", columns)], {})
     assert "cannot be imported by it yet" in text and "leaps ahead" in text
+
+
+def test_what_a_check_proves_of_a_frame_is_in_the_proposal(tmp_path):
+    """Test: velocities to north and east under the names u and v. Expected: their frame, to be confirmed."""
+    path = write(tmp_path / "earth.txt", LETTERS | {"u": WAY.real, "v": WAY.imag}, separator=" ")
+    v, text = read(path)
+    agrees(v, ("surge_velocity_mps", "heading_true_north_deg"))
+    assert text.count('frame = "earth"') == 2 and "prove. CONFIRM" in text

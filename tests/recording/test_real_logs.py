@@ -79,5 +79,5 @@ def test_a_folder_of_one_table_a_topic_goes_in_with_its_four_azimuths(data):
     folder = data / "milliampere" / "maneuvering1"
     text = suggestion([folder], {})
     v = read_voyage(folder, parse_map(tomllib.loads(text), "proposed"))
-    assert 'file = "nav_estimate.csv"' in text and 'unit = "quaternion"' in text
+    assert 'file = "nav_estimate.csv"' in text and 'unit = "quaternion"' in text and 'frame = "earth"' in text
     assert v.has(*(f"actuator_{i}.{last}" for i in (1, 2, 3, 4) for last in ("angle_deg", "rate_rpm")))

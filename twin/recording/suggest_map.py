@@ -4,6 +4,7 @@ What it rests on stands beside each line; a person confirms it. What the checks 
 it stands at its head.
 """
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,14 @@ from twin.recording.formats import recognised
 from twin.recording.formats.choose import Sources
 from twin.recording.map_file import parse_map
 from twin.recording.map_toml import lacking, quoted, toml, value
+from twin.recording.mapping import FRAMED
 from twin.recording.several import files_in
 from twin.recording.suggest_actuators import actuator_columns
 from twin.recording.suggest_clock import time_entry
 from twin.recording.suggest_entries import Entry, best_guesses, proposed
 from twin.recording.suggest_log import of_signals
+
+PROVED = re.compile(r'that is believed\. In the map: (frame|unit) = "([^"]+)" for (both|[a-z_]+)\.')
 
 
 def suggestion(paths: Sequence[Path], sources: Sources) -> str:
@@ -43,8 +47,21 @@ def of_tables(files: Sequence[SeenColumns], paths: Sequence[Path]) -> str:
     ]
     time = time_entry(used or files)
     columns = proposed(files, taken, parts, time)
-    text = written(files, time, columns)
-    return with_verdict(text, paths) + unused_columns(files, columns, time)
+    text = with_verdict(written(files, time, columns), paths)
+    if proved(columns, text):
+        text = with_verdict(written(files, time, columns), paths)
+    return text + unused_columns(files, columns, time)
+
+
+def proved(columns: dict[str, Entry], text: str) -> bool:
+    """Writes a frame or a unit that a check proves into the entries; whether there was one."""
+    found = [f for line in text.splitlines() if line.startswith("# ") for f in PROVED.findall(line)]
+    for key, value_of_it, whose in found:
+        for channel in FRAMED if whose == "both" else (whose,):
+            if channel in columns:
+                columns[channel].keys[key] = value_of_it
+                columns[channel].why.append(f"{key} as position, heading and turning prove. CONFIRM")
+    return bool(found)
 
 
 def written(files: Sequence[SeenColumns], time: dict[str, Any], columns: dict[str, Entry]) -> str:
