@@ -1,6 +1,6 @@
 """What the instruments alone leave open of the estimate's error, whatever the observer's bound was.
 
-    |nu_hat - nu| <= |nu_hat - y| + n + age (way of a second)     row by row; unmeasured: all that a ship can
+|nu_hat - nu| <= |nu_hat - y| + n + age (way of a second)     row by row; unmeasured: all that a ship can
 """
 
 from math import inf, pi
@@ -32,6 +32,10 @@ class LeftOpen:
         self._ages_s = {
             a: now_s - time[a] if a in si and a not in measured.derived else inf for a in BOUNDED
         }  # of what an instrument of its own measures
+
+    def distrust(self, attribute: str) -> None:
+        """Its samples leave open what they like: they are suspected."""
+        self._ages_s[attribute] = inf
 
     def in_time(self, attribute: str) -> bool:
         """Measured by its own instrument, not older than the certificate allows, and not from before a late
