@@ -226,7 +226,7 @@ class Stabilizer:
     ) -> None:
         """Whether samples lie farther from the estimate than bound and noise allow."""
         rolled = isinstance(tube, RolledTube)
-        uncounted = tube.uncounted if rolled else NO_PULL
+        uncounted = tube.uncounted if isinstance(tube, RolledTube) else NO_PULL
         for test, axis, accepted, most, noise, moved in zip(
             self._watched, NU, got, tube.widest, tube.noise, uncounted, strict=True
         ):
