@@ -200,6 +200,6 @@ def test_in_a_loop_of_1_hz_a_step_that_one_sample_nearly_takes_over_is_found_by_
         estimate = e.estimate
         assert k == 0 or not e.certificate.inside
         if e.certificate.inside:
-            u, v, r = bridge.loop.stabilizer.tube.beta
+            u, _, r = bridge.loop.stabilizer.tube.beta
             assert abs(estimate.surge_velocity_mps - true["surge_velocity_mps"]) <= u
             assert abs(estimate.yaw_rate_degps - true["yaw_rate_degps"]) <= 57.3 * r
