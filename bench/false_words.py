@@ -1,7 +1,7 @@
 """How often is something said of a healthy ship? `twin-bench false-words FOLDER`
 
 The loop that the service builds sails voyages of the reference sea on which nothing is wrong: every bundled
-hull, calm and in waves, manoeuvres in turn. Counted are beginnings: of an alarm that accuses an instrument,
+hull, calm and in waves, manoeuvres in turn. Counted are beginnings: of an alarm that suspects an instrument,
 of the promise's being contradicted by samples (both are false words), and of every other time without a
 promise (withdrawn: it is at the edge of its operating set, its bound is too wide). A voyage's counts are
 appended to FOLDER/voyages.jsonl; the same command goes on where it was ended."""
@@ -27,7 +27,7 @@ MODEL_SEA = Weather(1.8, 60.0, 0.12, 0.041, 1.2, 60.0, 0.12, 240.0, 0.02)
 NONE_SEEN = 3.0  # of a Poisson's mean: with 95 % no greater one shows nothing
 
 
-class Healthy(NamedTuple):
+class TrueVoyage(NamedTuple):
     """One voyage: seconds judged and without a promise; how often a false word began, by its words without
     numbers; how often the promise was withdrawn without one, likewise."""
 
@@ -66,10 +66,10 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def kept_voyages(path: Path) -> list[Healthy]:
+def kept_voyages(path: Path) -> list[TrueVoyage]:
     """The whole lines of the file; a last one that was cut off is sailed again."""
     lines = path.read_text().splitlines(keepends=True) if path.exists() else []
-    return [Healthy(**json.loads(line)) for line in lines if line.endswith("}\n")]
+    return [TrueVoyage(**json.loads(line)) for line in lines if line.endswith("}\n")]
 
 
 def cases(rounds: int, seconds: float) -> Iterator[tuple[float, str, str, str | Weather, int, str]]:
@@ -88,7 +88,7 @@ def cases(rounds: int, seconds: float) -> Iterator[tuple[float, str, str, str | 
 
 def healthy(
     seconds: float, hull: str, sea: str, weather: str | Weather, seed: int, manoeuvre: str
-) -> Healthy:
+) -> TrueVoyage:
     """One voyage through the loop at 10 Hz."""
     (recording,) = simulate([SeaCase(hull, manoeuvre, weather, seed=seed, duration_s=seconds)], 1.0 / RATE_HZ)
     loop, ticks, without = loop_for(hull, RATE_HZ), 0, 0
@@ -100,10 +100,10 @@ def healthy(
         if k >= LEFT_OUT_S * RATE_HZ:
             ticks, without = ticks + 1, without + bool(why)
             false.update(said - before)
-            accused = any(word in why for word in SUSPECTED)
-            withdrawn.update([why] if why and not was and not accused else [])
+            suspected = any(word in why for word in SUSPECTED)
+            withdrawn.update([why] if why and not was and not suspected else [])
         before, was = said, why
-    return Healthy(
+    return TrueVoyage(
         hull,
         sea,
         manoeuvre,
@@ -122,7 +122,7 @@ def without_numbers(text: str) -> str:
     return " ".join(w for w in text.partition(" = ")[0].split() if not any(c.isdigit() for c in w))
 
 
-def page(voyages: Sequence[Healthy]) -> str:
+def page(voyages: Sequence[TrueVoyage]) -> str:
     """The table; by hull and sea."""
     columns = (
         "hull", "sea", "voyages", "hours", "false words", "in 1000 h", "without a promise",

@@ -158,3 +158,48 @@ def test_a_lie_does_not_leave_its_current_behind():
     for k in range(120):
         stream.feed(in_stream(0.3, k), 1.0)
     assert not stream.alarm
+
+
+def test_a_sample_that_did_not_count_is_remembered_by_what_it_pulled():
+    """By hand: E = 0.2, sigma = 0.05, a step of 0.5 of which the first sample takes 0.4 away. Expected: the second is
+    six deviations beyond the bound as the first was, and that is enough; forgotten once a sample is as it should be,
+    and nothing is found where the first one counted."""
+    test, forgotten, counted = Contradiction(), Contradiction(), Contradiction()
+    for t in (test, forgotten):
+        t.fresh(-0.5, 0.2, 0.15, 0.0, -0.4)
+        assert t.suspects and not t.at(0.0)
+    test.fresh(-0.1, 0.6, 0.15, 1.0, -0.08)
+    assert test.at(1.0)
+    forgotten.fresh(0.4, 0.6, 0.15, 1.0)  # back to where it was before
+    assert not forgotten.suspects and not forgotten.at(1.0)
+    counted.fresh(-0.5, 0.2, 0.15, 0.0)
+    counted.fresh(-0.1, 0.2, 0.15, 1.0)
+    assert not counted.suspects
+
+
+@pytest.mark.parametrize("lie", [{"surge_velocity_mps": 0.5}, {"yaw_rate_degps": 0.2}])
+def test_in_a_loop_of_1_hz_a_step_that_one_sample_nearly_takes_over_is_found_by_the_next(
+    make_service, tmp_path, lie
+):
+    """Test: speed over ground or rate of turn leaps by what the noise bound allows three to six times, and stays.
+    Expected: no promise from the second sample on for a minute, and none that was wrong."""
+    settings = {"loop.rate_hz": 1.0, "observer.certificate": str(tmp_path / "certificate.json")}
+    bridge = make_service(settings=settings)
+
+    def second(alter=lambda readings, b: readings):
+        for _ in range(9):
+            bridge.sailing.advance()
+        bridge.now_s += 0.9
+        return bridge.run(0.1, alter)[-1]
+
+    before = [second() for _ in range(120)]
+    assert all(t.certificate.inside for t in before[60:])
+    said = lambda readings, b: [r._replace(value=r.value + lie.get(r.channel, 0.0)) for r in readings]
+    for k in range(50):
+        e, true = second(said), bridge.truth
+        estimate = e.estimate
+        assert k == 0 or not e.certificate.inside
+        if e.certificate.inside:
+            u, _, r = bridge.loop.stabilizer.tube.beta
+            assert abs(estimate.surge_velocity_mps - true["surge_velocity_mps"]) <= u
+            assert abs(estimate.yaw_rate_degps - true["yaw_rate_degps"]) <= 57.3 * r

@@ -6,6 +6,11 @@
 
 E: the greatest bound before a correction that the sample may be compared with; n: three deviations sigma of
     the instrument's noise.
+
+Where a sample takes most of an error away, the first one that is wrong makes the next look right. So while
+S > 0 a sample counts as no measurement (RolledTube), and the next is compared with where the estimate would
+be without them: z = (|y - nu_hat + c| - (E - |c|))/sigma, c what they pulled it by, to first order.
+
 The second is Page's test, accepted or not, of a noise that is BEYOND deviations off for good: where |e| <= E
 and the noise is white and normal, a factor exp(S) has an expectation of at most one, so a false alarm comes
 once in exp(LIMIT) samples or less often [Lorden 1971]. One sample alone, however wild, is for the gates. What
@@ -29,7 +34,7 @@ class Contradiction:
     """Of one row."""
 
     def __init__(self) -> None:
-        self._share = self._far = 0.0
+        self._share = self._far = self._off = 0.0
         self._until_s = float("-inf")
 
     def feed(self, gap: float, most: float, noise: float, accepted: bool) -> None:
@@ -37,12 +42,21 @@ class Contradiction:
         if accepted and (self._share or abs(gap) > most + noise):
             self._share += ((abs(gap) > most + noise) - self._share) / MEMORY
 
-    def fresh(self, gap: float, most: float, noise: float, now_s: float) -> None:
-        """A sample that was not there before."""
-        z = DEVIATIONS * (abs(gap) - most) / noise
+    @property
+    def suspects(self) -> bool:
+        """Whether the last samples were farther off than usual noise explains."""
+        return self._far > 0.0
+
+    def fresh(self, gap: float, most: float, noise: float, now_s: float, uncounted: float = 0.0) -> None:
+        """A sample that was not there before. `uncounted`: what it moved the estimate by without counting as
+        a measurement (0: it did count, or that is not known); E of the next contains it."""
+        off, self._off = self._off, self._off + uncounted
+        z = DEVIATIONS * (abs(gap + off) - (most - abs(off))) / noise
         self._far = max(self._far + min(BEYOND * z - 0.5 * BEYOND * BEYOND, 0.5 * LIMIT), 0.0)
         if self._far >= LIMIT:
             self._far, self._until_s = LIMIT, now_s + WINDOW_S
+        if not self._far or not uncounted:
+            self._off = 0.0
 
     def at(self, now_s: float) -> bool:
         """Whether the bound is contradicted."""

@@ -33,6 +33,10 @@ class LeftOpen:
             a: now_s - time[a] if a in si and a not in measured.derived else inf for a in BOUNDED
         }  # of what an instrument of its own measures
 
+    def distrust(self, attribute: str) -> None:
+        """Its samples leave open what they like: they are suspected."""
+        self._ages_s[attribute] = inf
+
     def in_time(self, attribute: str) -> bool:
         """Measured by its own instrument, not older than the certificate allows, and not from before a late
         tick."""

@@ -2,9 +2,9 @@
 the bound of the observer's error and says whether the assumptions of its proof hold now
 (docs/stability.md)."""
 
-from math import degrees, hypot, pi
+from math import copysign, degrees, hypot, pi
 
-from twin.live.certificate.observer_tube import NO_PULL, NU, Tube
+from twin.live.certificate.observer_tube import NO_PULL, NONE, NU, Tube
 from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.contradiction import Contradiction, contradicted
@@ -193,7 +193,12 @@ class Stabilizer:
         self._guessed = tuple(a for a in self._guessed if not open_.known(a))
         sea = measured.si.get("H_s", 0.0)
         if isinstance(tube, RolledTube) and isinstance(observer, RollBack):
+            if suspected := any(test.suspects for test in self._watched):
+                u, v, r = self._watched
+                tube.distrusted = u.suspects, v.suspects, r.suspects
             tube.follow(observer.path, sea, acts)
+            if suspected:
+                tube.distrusted = NONE
         else:
             heading = observer.received["psi"] and open_.in_time("psi")
             in_time = self._since_late_s > 0.0
@@ -220,13 +225,17 @@ class Stabilizer:
         open_: LeftOpen,
     ) -> None:
         """Whether samples lie farther from the estimate than bound and noise allow."""
-        for test, axis, accepted, most, noise in zip(
-            self._watched, NU, got, tube.widest, tube.noise, strict=True
+        rolled = isinstance(tube, RolledTube)
+        uncounted = tube.uncounted if isinstance(tube, RolledTube) else NO_PULL
+        for test, axis, accepted, most, noise, moved in zip(
+            self._watched, NU, got, tube.widest, tube.noise, uncounted, strict=True
         ):
             gap = observer.innovation.get(axis, 0.0)
             test.feed(gap, most, noise, accepted)
             if axis in measured.fresh and open_.in_time(axis):
-                test.fresh(gap, most, noise, measured.now_s)
+                test.fresh(gap, most, noise, measured.now_s, copysign(moved, gap))
+            if rolled and test.suspects:
+                open_.distrust(axis)
 
 
 def _unsure(measured: Measured) -> str:

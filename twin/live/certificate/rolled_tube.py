@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
-from twin.live.certificate.observer_tube import NOTHING, UNKNOWN, Three, Tube, halves
+from twin.live.certificate.observer_tube import NONE, NOTHING, UNKNOWN, Three, Tube, halves
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.observer.operating import NU, outside_in_words
@@ -50,6 +50,9 @@ class RolledTube(Tube):
         self._nodes: deque[Node] = deque()
         self._from_s = float("-inf")  # from where the last path went
         self._left: str | None = None  # what left the set on the way, or may have
+        self.distrusted = NONE  # rows of nu of which no sample counts for the time being
+        # what samples that did not count moved each row by; 0 where a part of the way was gone again
+        self.uncounted: list[float] = [0.0, 0.0, 0.0]
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
 
@@ -98,6 +101,8 @@ class RolledTube(Tube):
         """The bound at the end of that path."""
         self._look(H_s, acts)
         nodes, self._left, self._from_s = self._nodes, None, path.start_s
+        again = bool(nodes) and nodes[-1].time_s > path.start_s
+        self.uncounted = [0.0, 0.0, 0.0]
         while nodes and nodes[-1].time_s > path.start_s:
             nodes.pop()
         x = nodes[-1].bound if nodes else (*self.beta, self.psi)
@@ -114,6 +119,8 @@ class RolledTube(Tube):
             nodes.append(Node(time_s, x, of_state(after), before))
         while len(nodes) > 1 and nodes[1].time_s <= nodes[-1].time_s - KEPT_S:
             nodes.popleft()
+        if again:
+            self.uncounted = [0.0, 0.0, 0.0]
         self.beta, self.psi = x[:3], x[3]
         return self.beta
 
@@ -139,8 +146,15 @@ class RolledTube(Tube):
         return a, b, c, e
 
     def _pulled(self, x: Four, i: int, full: bool, moved: float) -> Four:
-        bound = [*x]
-        bound[i] = (1.0 - self._share) * x[i] + self._share * self._noise[i] if full else x[i] + moved
+        """A sample farther from the estimate than x_i + n_i is not one that A4 speaks of: it counts by what
+        it moved."""
+        bound, share, noise = [*x], self._share, self._noise[i]
+        if full and moved <= share * (x[i] + noise) and not (i < len(NU) and self.distrusted[i]):
+            bound[i] = (1.0 - share) * x[i] + share * noise
+        else:
+            bound[i] += moved
+            if i < len(NU):
+                self.uncounted[i] += moved
         return tuple(bound)  # type: ignore[return-value]
 
     def _look(self, H_s: float, acts: bool) -> None:
