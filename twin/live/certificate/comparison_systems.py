@@ -82,8 +82,8 @@ def contracts(a: Matrix, under: float = 1.0) -> bool:
 
 
 def radius(a: Matrix) -> float:
-    """Greatest eigenvalue of a matrix with no negative entry (Perron), from above, to a part in 10^12; infinite
-    where the minors are beyond what a double holds."""
+    """Greatest eigenvalue of a matrix with no negative entry (Perron), from above, to a part in 10^12;
+    infinite where the minors are beyond what a double holds."""
     if not all(x < float("inf") for row in a for x in row):
         return float("inf")
     low, high = 0.0, max(max(map(max, a)), 1e-300)
