@@ -5,7 +5,8 @@ from math import copysign, sqrt
 
 import pytest
 
-from twin.live.gates.plausible import SPEEDS, TURNS, Pair, Plausibility, _word
+from twin.live.gates import plausible
+from twin.live.gates.plausible import SPEEDS, TURNS, Pair, Plausibility
 from twin.live.signals.measured import Measured
 
 TURNING, MOVING = "yaw_rate_degps against the turning heading", "speed over ground against the positions"
@@ -43,7 +44,7 @@ def test_a_pair_is_three_slow_sums_and_their_factor():
     ),
 )  # fmt: skip
 def test_the_nearest_mistake_within_a_fifth_has_its_name(factor, mistakes, word):
-    assert _word(factor, mistakes) == word
+    assert plausible._word(factor, mistakes) == word
 
 
 class Sailed:
