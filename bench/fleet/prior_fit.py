@@ -21,7 +21,7 @@ from twin.study.estimation.form import TERMS
 
 OF_FORM = "form."
 ROUNDS = 200  # of the iteration; it has settled to three digits after a hundred
-LEAST_TOLD = 1e-2  # information, of the prior's, from which a direction counts as seen
+SEEN_SHARE = 1e-2  # information, of the prior's, from which a direction counts as seen
 WIDTHS = np.array(list(TERMS.values()))
 
 
@@ -61,7 +61,7 @@ def of_ship(path: Path) -> Likelihood:
     at = [place[OF_FORM + name] for name in TERMS]
     P = np.array(kept["covariance"])[np.ix_(at, at)] / np.outer(WIDTHS, WIDTHS)
     told, V = np.linalg.eigh(np.linalg.inv(P) - np.eye(len(at)))  # of widths that stand
-    told, V = told[told > LEAST_TOLD], V[:, told > LEAST_TOLD]
+    told, V = told[told > SEEN_SHARE], V[:, told > SEEN_SHARE]
     mean = np.array(kept["offset"])[at] / WIDTHS
     A, b = (V * told) @ V.T, V @ ((told + 1.0) * (V.T @ mean))
     return Likelihood(path.stem.rpartition("-")[0], A / np.outer(WIDTHS, WIDTHS), b / WIDTHS)

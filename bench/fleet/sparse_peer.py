@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
         r for r in rows_of([args.folder]) if len(r["hidden"]) == 1 and set(r["hidden"]) <= set(POINTS_AT)
     ]
     for row in (r for r in asked if r["key"] not in known):
-        said = _asked(args.folder, row)
+        said = _of_row(args.folder, row)
         if said is None:
             print("pysindy is not installed: pip install -e '.[peers]'")
             return 1
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _asked(folder: Path, row: Row) -> dict[str, Any] | None:
+def _of_row(folder: Path, row: Row) -> dict[str, Any] | None:
     ship, _ = pickle.loads((folder / "ships" / f"{row['family']}-{row['seed']}.pickle").read_bytes())
     number = int(row["key"].rpartition("-")[2])
     case = FleetCase(row["family"], row["seed"], number, row["kind"], row["hidden"])
