@@ -16,5 +16,6 @@ compile() {
         --no-emit-trusted-host --no-emit-find-links "$@" pyproject.toml
 }
 compile --constraint "$tools/memory.txt" --output-file "$here/requirements.lock"
+sed -i "\|#   -c $tools|d" "$here/requirements.lock"
 compile --output-file "$here/requirements-3.14.lock"
 "$python" "$here/sbom.py" "$here/requirements.lock" "$here/sbom.json"
