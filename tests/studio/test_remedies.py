@@ -8,7 +8,6 @@ import pytest
 from twin.recording.checks import run_checks
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
-from twin.recording.suggest_map import suggestion
 from twin.studio.project import BUNDLED
 from twin.studio.remedies import edited, remedies_of
 
@@ -22,6 +21,9 @@ COLUMNS = (
     "rudder_angle_deg",
     "propeller_rate_rpm",
 )
+
+# what its owner believes: a proposed map would mend some of the mistakes by itself
+AS_NAMED = '[time]\ncolumn = "time_s"\n\n[columns]\n' + "".join(f'{name} = "{name}"\n' for name in COLUMNS)
 
 
 def table(path, mistake):
@@ -38,7 +40,7 @@ def table(path, mistake):
 
 def mend(path):
     """(checks before, remedies taken, checks after): every first remedy is written into the map, until none is left."""
-    text, taken, first = suggestion([path], {}), [], None
+    text, taken, first = AS_NAMED, [], None
     for _ in range(4):
         voyage = read_voyage(path, parse_map(tomllib.loads(text), "map"))
         checks = run_checks(voyage)

@@ -70,11 +70,12 @@ def with_time(raw: Raw) -> None:
 
 
 def tells_why(note: str, missing: list[str]) -> bool:
-    """Whether a note tells of what is missing, or of what was left out."""
+    """Whether a note tells of what is missing, of what was left out, or of how numbers were read."""
     return (
         note.startswith(("not used", "left out"))
         or any(name in note for name in missing)
         or "blanked" in note
+        or "decimal" in note
     )
 
 

@@ -4,6 +4,7 @@ turned about."""
 import re
 from typing import Any
 
+from twin.num import as_given
 from twin.recording.formats.signals import Signals
 
 SKID = {73: "port", 74: "starboard"}  # SERVOn_FUNCTION: throttle left and right
@@ -34,12 +35,11 @@ def by_function(out: Signals, settings: dict[str, float]) -> None:
         if settings.get(f"SERVO{no}_REVERSED", 0.0) > 0.0:
             for i, pulse in enumerate(series.values):
                 series.values[i] = 2.0 * stop - pulse if pulse else pulse
-            out.notes.append(f"{name} is turned about {stop:.0f} us, for SERVO{no}_REVERSED is set")
+            out.notes.append(f"{name} is turned about {as_given(stop, 5)} us, for SERVO{no}_REVERSED is set")
         if function in SKID:
             series.quantity, series.rank = f"{SKID[function]}.pwm_us", 0
-            zero = (
-                f"{name}: SERVO{no}_TRIM is {stop:.0f}: zero = {(stop - 1500.0) / 400.0:.4g} in the ship file"
-            )
+            off = as_given((stop - 1500.0) / 400.0, 4)
+            zero = f"{name}: SERVO{no}_TRIM is {as_given(stop, 5)}: zero = {off} in the ship file"
             out.notes += [zero] * (stop != 1500.0)
         else:
             out.settings[name] = outputs_range(settings, no) | {"function": float(function)}

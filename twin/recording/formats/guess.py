@@ -66,6 +66,7 @@ def _rules(channel: str, names: str, without: frozenset[str] | str = "") -> list
 
 
 OWN_WORD = 0.3  # what a word of the name itself weighs more than one of its group
+ONE_LETTER = 0.5  # what a name of one letter weighs less: it has many meanings
 SOG, COG = "speed_over_ground_mps", "course_over_ground_deg"
 ENGINE = "engine motor pitch torque power fuel load oil thrust throttle"
 NO_MOTION = "water wind power battery motor gyro magnetic acceleration accelerometer volt voltage current"
@@ -226,6 +227,7 @@ def guess(name: str, stated: str = "", group: str = "") -> Guess | None:
     for rule in RULES:
         if rule.words <= there and not rule.without & there and can_be(rule.channel, unit):
             score = len(rule.words) - 0.1 * (len(there) - len(rule.words)) + OWN_WORD * len(rule.words & own)
+            score -= ONE_LETTER * all(len(word) == 1 for word in rule.words)
             if best is None or score > best.score:
                 best = Guess(rule.channel, unit, score)
     return best

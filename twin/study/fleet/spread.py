@@ -64,7 +64,7 @@ def _cluster(
         else:
             with _left_alone_by_interrupts():
                 cluster = LocalCluster(
-                    n_workers=min(workers, len(jobs)), threads_per_worker=1, dashboard_address=None,
+                    n_workers=min(workers, len(jobs)), threads_per_worker=1, dashboard_address="127.0.0.1:0",
                     silence_logs=QUIET, memory_limit=0,
                 )  # fmt: skip
                 stack.enter_context(cluster)
