@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.errors import DataError
 from twin.num import as_given
 from twin.recording.columns_seen import SeenColumns
 from twin.recording.formats.guess import guess
@@ -214,5 +215,5 @@ def seconds_of(seen: SeenColumns, time: dict[str, Any]) -> np.ndarray | None:
     words = [" ".join(parts) for parts in zip(*(seen.texts(n) for n in names), strict=True)]
     try:
         return moments(seen.path, np.arange(len(words)), words, spec)
-    except Exception:
+    except DataError:
         return None
