@@ -1,9 +1,9 @@
-"""`python -m bench.fleet VERB`: run, table, fit, keep, peer, prior."""
+"""`python -m bench.fleet VERB`: run, table, fit, keep, peer, prior, proofs."""
 
 import argparse
 import sys
 
-from bench.fleet import decision_fit, fleet_page, keep_answers, prior_fit, sparse_peer
+from bench.fleet import decision_fit, false_proofs, fleet_page, keep_answers, prior_fit, sparse_peer
 from bench.fleet import run as verb_run
 
 
@@ -19,6 +19,7 @@ def main() -> int:
         "keep": keep_answers,
         "peer": sparse_peer,
         "prior": prior_fit,
+        "proofs": false_proofs,
     }
     for name, module in each.items():
         module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))

@@ -27,7 +27,7 @@ class Share:
             return 0.0, 1.0
         z, p, n = 1.96, self.k / self.n, self.n
         middle, half = p + z * z / (2 * n), z * sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-        return (middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n)
+        return max(middle - half, 0.0) / (1 + z * z / n), (middle + half) / (1 + z * z / n)
 
     def __str__(self) -> str:
         if not self.n:
