@@ -14,43 +14,33 @@ import sys
 import tempfile
 from array import array
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
-from math import degrees, radians, sqrt
+from math import sqrt
 from pathlib import Path
-from random import Random
 from time import monotonic, sleep
 from typing import Any, NamedTuple
 
 from bench import bench_output
-from bench.fuzz.stepped_voyage import CHANNELS, SIZES
 from bench.options import positive
+from bench.steady_feed import UTC_LESS_MONOTONIC_S, SteadyFeed
 from bench.tick.memory import memory
 from twin.errors import ThresholdError, TwinError, UsageError
 from twin.live import build, realtime
 from twin.live.clock import Instant
 from twin.live.inbox import Inbox
-from twin.live.keelson.bus import BusState, Incoming
-from twin.live.keelson.messages import encode_fix, encode_float, wrap
-from twin.live.keelson.topics import BY_SUBJECT, key
 from twin.live.learning.learned_force import LearnedForce
 from twin.live.log.record import Recorder
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.service import Service, Stop, recorder_of
-from twin.live.signals import geodesy
 from twin.live.signals.config import Settings
-from twin.physics.model import Model
-from twin.physics.ship import Ship
-from twin.physics.state import Force, Situation
 
 WANTED_MB_AN_HOUR = 0.2  # of 1e6 bytes
 CHANGES_S = (900.0, 10.0)  # of sailing between two log files: the default of the settings, and many
 LOOKS, WARM_UP = 120, 0.125  # readings of the memory; share of the hours that is sailed before them
 LOG_MB = 160.0  # quota of the log's folder
-BEGIN_S, UTC_LESS_MONOTONIC_S, SEED = 1000.0, 1.7e9, 33
+BEGIN_S = 1000.0
 AHEAD = 1000  # messages that the loop may be ahead of the log's thread, which works in real time
-LEGS_S, RUDDER_DEG, RUDDER_DEGPS = (100.0, 60.0), 15.0, 2.5  # to starboard, to port: it stays in one place
 COLUMNS = (
     "a new log file every",
     "files",
@@ -149,62 +139,6 @@ def slope(hours: Sequence[float], mb: Sequence[float]) -> tuple[float, float]:
     alike = sum(x * y for x, y in pairwise(left)) / ss if ss else 0.0
     alike = min(max(alike, 0.0), 0.99)
     return b, 1.98 * sqrt(ss / (n - 2) / tt * (1.0 + alike) / (1.0 - alike))
-
-
-class SteadyFeed:
-    """A bus on which every instrument speaks at each tick and nobody listens. It keeps nothing."""
-
-    def __init__(self, ship: Ship, period_s: float):
-        self.model, self.shaft, self.period_s = Model.of(ship), 0.9 * ship.U_0 / (0.7 * ship.D_P), period_s
-        self._held: Force | None = None
-        self.ship_state: tuple[float, ...] = (0.0, 0.0, radians(40.0), 0.8 * ship.U_0, 0.0, 0.0)
-        self.rudder, self.heard, self.random = 0.0, 0, Random(SEED)
-        self.datum = geodesy.datum(57.62, 11.58)
-        self.keys = {s: key("twin", "ship", s, "steady") for s in BY_SUBJECT}
-
-    def __enter__(self) -> "SteadyFeed":
-        return self
-
-    def __exit__(self, *_: object) -> None: ...
-
-    def listen_to(self, subjects: list[str]) -> None: ...
-
-    def publish(self, key: str, data: bytes) -> None: ...
-
-    @property
-    def state(self) -> BusState:
-        return BusState(True, "", 1, 0, self.heard, 0, 0)
-
-    def drain(self, now_s: float) -> list[Incoming]:
-        """What the instruments say now; the ship sails on by one period."""
-        self._sail(now_s)
-        x, y, psi, u, v, r = self.ship_state
-        true = (x, y, degrees(psi), u, v, degrees(r), self.rudder, 60.0 * self.shaft, 0.0)
-        said = {c: value + self.random.gauss(0.0, SIZES[c]) for c, value in zip(CHANNELS, true, strict=True)}
-        said["heading_true_north_deg"] %= 360.0
-        wall_ns = round((UTC_LESS_MONOTONIC_S + now_s) * 1e9)
-        place = geodesy.from_chart(self.datum, said.pop("north_m"), said.pop("east_m"))
-        made = {name: encode_float(value, wall_ns) for name, value in said.items()}
-        made["location_fix"] = encode_fix(*place, wall_ns)
-        self.heard += len(made)
-        return [(self.keys[name], wrap(data, wall_ns), now_s) for name, data in made.items()]
-
-    def pushed_by(self, learned: LearnedForce) -> None:
-        """From now on the ship has the force that its network was taught, so that the guard lets it act."""
-
-        def force(s: Situation) -> Force:
-            self._held = self._held or learned.at(s, ()).force  # once a step
-            return self._held
-
-        self.model = replace(self.model, residual=force)
-
-    def _sail(self, now_s: float) -> None:
-        order = RUDDER_DEG if now_s % sum(LEGS_S) < LEGS_S[0] else -RUDDER_DEG
-        most = RUDDER_DEGPS * self.period_s
-        self.rudder += max(min(order - self.rudder, most), -most)
-        situation = Situation(delta=radians(self.rudder), n=self.shaft)
-        self._held = None
-        self.ship_state = tuple(self.model.step(self.ship_state, situation, self.period_s))
 
 
 class SailedClock:
