@@ -57,7 +57,7 @@ COLUMNS = (
 CHILD = "import sys; from bench.memory_growth import child; child(*sys.argv[1:])"
 
 
-class Growth(NamedTuple):
+class MemorySlope(NamedTuple):
     """One process: what it did, and its slope [1e6 bytes an hour of sailing] with half its 95 % interval."""
 
     change_s: float
@@ -97,16 +97,16 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def measured(hours: float, rate_hz: float, hull: str, change_s: float) -> Growth:
+def measured(hours: float, rate_hz: float, hull: str, change_s: float) -> MemorySlope:
     """One voyage in a process of its own, which has nothing else in its memory."""
     words = [sys.executable, "-c", CHILD, *map(str, (hours, rate_hz, hull, change_s))]
     done = subprocess.run(words, stdout=subprocess.PIPE, text=True)
     if done.returncode:
         raise TwinError(f"the service under way ended with exit code {done.returncode}: see above.")
-    return Growth(**json.loads(done.stdout.splitlines()[-1]))
+    return MemorySlope(**json.loads(done.stdout.splitlines()[-1]))
 
 
-def page(found: Sequence[Growth], args: argparse.Namespace) -> str:
+def page(found: Sequence[MemorySlope], args: argparse.Namespace) -> str:
     lines = bench_output.begun("Growth of the service's memory", __doc__, *COLUMNS)
     for r in found:
         cells = (
@@ -167,7 +167,7 @@ class SailedClock:
         self.recorder.write(*message)
 
 
-class Watcher:
+class MemoryReader:
     """Reads the memory now and then and counts the ticks; its room is taken before the first one."""
 
     def __init__(self, first: int, last: int):
@@ -185,12 +185,12 @@ class Watcher:
 
 
 def child(hours: str, rate_hz: str, hull: str, change_s: str) -> None:
-    """The voyage itself; prints its `Growth` as JSON."""
+    """The voyage itself; prints its `MemorySlope` as JSON."""
     with tempfile.TemporaryDirectory() as folder:
         print(json.dumps(sailed(Path(folder), float(hours), float(rate_hz), hull, float(change_s))._asdict()))
 
 
-def sailed(folder: Path, hours: float, rate_hz: float, hull: str, change_s: float) -> Growth:
+def sailed(folder: Path, hours: float, rate_hz: float, hull: str, change_s: float) -> MemorySlope:
     began_s = monotonic()
     settings = Settings(
         {
@@ -206,7 +206,7 @@ def sailed(folder: Path, hours: float, rate_hz: float, hull: str, change_s: floa
     recorder = recorder_of(settings)
     assert recorder is not None
     first, last = round(WARM_UP * hours * 3600.0 * rate_hz), round((1.0 + WARM_UP) * hours * 3600.0 * rate_hz)
-    clock, watcher = SailedClock(1.0 / rate_hz, last, recorder), Watcher(first, last)
+    clock, watcher = SailedClock(1.0 / rate_hz, last, recorder), MemoryReader(first, last)
     recorder.monotonic = lambda: clock.now_s
     feed = SteadyFeed(build.load_ship(hull, arrays=False), 1.0 / rate_hz)
     inbox = Inbox(feed, clock.log)
@@ -219,7 +219,7 @@ def sailed(folder: Path, hours: float, rate_hz: float, hull: str, change_s: floa
     path, state = recorder.state.path, recorder.close(60.0)
     mb, quarter = list(watcher.mb), LOOKS // 4
     b, within = slope([tick / rate_hz / 3600.0 for tick in watcher.at], mb)
-    return Growth(
+    return MemorySlope(
         change_s,
         int(Path(path).name.split("-")[1]),
         watcher.ticks,
