@@ -106,6 +106,11 @@ BENCHES: dict[str, Bench] = {
         "how much memory `twin calibrate` takes at its highest",
         "twin-bench calibrate-memory",
     ),
+    "growth": Bench(
+        "bench.memory_growth",
+        "does the service's memory grow under way, and with each log file?",
+        "twin-bench growth --hours 2",
+    ),
     "fuzz": Bench(
         "bench.fuzz.run",
         "fuzzing, guided by coverage, of all that reads the outside world",

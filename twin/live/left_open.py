@@ -1,6 +1,6 @@
 """What the instruments alone leave open of the estimate's error, whatever the observer's bound was.
 
-    |nu_hat - nu| <= |nu_hat - y| + n + age (way of a second)     row by row; unmeasured: all that a ship can
+|nu_hat - nu| <= |nu_hat - y| + n + age (way of a second)     row by row; unmeasured: all that a ship can
 """
 
 from math import inf, pi

@@ -65,14 +65,16 @@ def apart(package: str, table: dict[str, list[Field]]) -> dict[str, Any]:
 def descriptor_set(message_class: Any) -> bytes:
     """The FileDescriptorSet an MCAP schema record holds: the type's file after every file it imports."""
     files: dict[str, bytes] = {}
-
-    def visit(file: Any) -> None:
-        for dependency in file.dependencies:
-            visit(dependency)
-        files.setdefault(file.name, file.serialized_pb)
-
-    visit(message_class.DESCRIPTOR.file)
+    _gather(message_class.DESCRIPTOR.file, files)
     return proto_file.set_of(list(files.values()))
+
+
+def _gather(file: Any, files: dict[str, bytes]) -> None:
+    """A file behind those it imports. No function inside another: one that calls itself is a ring, which only
+    the garbage collector frees, and the service switches that off."""
+    for dependency in file.dependencies:
+        _gather(dependency, files)
+    files.setdefault(file.name, file.serialized_pb)
 
 
 def _keelson_folder() -> Path:

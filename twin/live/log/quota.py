@@ -28,7 +28,7 @@ class Old(NamedTuple):
     """A finished file of the log."""
 
     number: int
-    path: Path
+    path: str  # no Path: each name would stay in the interpreter's table of names, which only grows
     size: int
     time_s: float
 
@@ -63,13 +63,14 @@ def trim(folder: Path, name: str, quota: Quota, writing: Path | None = None) -> 
 def own_files(folder: Path, name: str, writing: Path | None = None) -> list[Old]:
     """The finished files of this log, the oldest first: by their numbers, which no clock can set back."""
     pattern, found = re.compile(rf"{re.escape(name)}-(\d+)-[^/]*\.({'|'.join(ENDINGS)})"), []
+    own = writing.name if writing else ""
     with suppress(FileNotFoundError), os.scandir(folder) as entries:
         for entry in entries:
             match = pattern.fullmatch(entry.name)
-            if match and entry.is_file(follow_symlinks=False) and Path(entry.path) != writing:
+            if match and entry.is_file(follow_symlinks=False) and entry.name != own:
                 with suppress(FileNotFoundError):
                     about = entry.stat(follow_symlinks=False)
-                    found.append(Old(int(match[1]), Path(entry.path), about.st_size, about.st_mtime))
+                    found.append(Old(int(match[1]), entry.path, about.st_size, about.st_mtime))
     return sorted(found)
 
 
@@ -84,7 +85,7 @@ def _why(file: Old, quota: Quota, newest_s: float, total: int, free: int) -> str
     return ""
 
 
-def _delete(path: Path) -> bool:
+def _delete(path: str) -> bool:
     """Whether it is gone; a file that another process is writing holds a lock and stays."""
     try:
         fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
@@ -115,6 +116,8 @@ def _free(folder: Path) -> int:
 def _in_words(gone: list[tuple[Old, str]]) -> str:
     if not gone:
         return ""
-    names = gone[0][0].path.name + (f" to {gone[-1][0].path.name}" if len(gone) > 1 else "")
+    names = os.path.basename(gone[0][0].path) + (
+        f" to {os.path.basename(gone[-1][0].path)}" if len(gone) > 1 else ""
+    )
     files = "the oldest file" if len(gone) == 1 else f"the {len(gone)} oldest files"
     return f"log: {files} deleted ({names}), as {' and '.join(sorted({why for _, why in gone}))} asks"

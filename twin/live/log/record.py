@@ -58,6 +58,7 @@ class Recorder:
         quota: Quota = NO_LIMITS,
     ):
         self.folder, self.name = Path(folder), name
+        self.monotonic: Callable[[], float] = time.monotonic  # by which a file grows old [s]
         self.max_bytes, self.max_seconds = max_bytes, max_seconds
         self.quota, self._trim_at = quota, 0.0
         self.repaired: list[str] = []
@@ -102,7 +103,7 @@ class Recorder:
     def state(self) -> LogState:
         """How the log is: its file, its alarm and its counts."""
         path = str(self._segment.path) if self._segment else ""
-        alarm = self._alarm or (self._notice if time.monotonic() < self._notice_until else "")
+        alarm = self._alarm or (self._notice if self.monotonic() < self._notice_until else "")
         return LogState(not self._alarm, alarm, path, self._written, self._dropped, self._lost)
 
     def close(self, timeout_s: float = 2.0) -> LogState:
@@ -115,15 +116,15 @@ class Recorder:
 
     def _say(self, notice: str, seconds: float = NOTICE_S) -> None:
         """Something went wrong and the log goes on: said for a while."""
-        self._notice, self._notice_until = notice, time.monotonic() + seconds
+        self._notice, self._notice_until = notice, self.monotonic() + seconds
 
     def _run(self) -> None:
         while not self._closing:
             self._wake.wait(PERIOD_S)
             self._wake.clear()
-            self._cycle(time.monotonic())
+            self._cycle(self.monotonic())
         self._retry_at = 0.0
-        self._cycle(time.monotonic())
+        self._cycle(self.monotonic())
         with suppress(OSError):  # then the next start finishes it
             self._close_segment(finish=True)
 
