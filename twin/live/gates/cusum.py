@@ -17,7 +17,7 @@ K, H = 0.75, 10.0
 OVER = 0.4  # share of H at which an alarm is over, and from which little is taught
 WILD = 3.0  # usual deviations, as which a wilder one counts where it teaches
 ENOUGH = 12  # blocks from which the scale is known
-NO_NOISE_SCALES = 25.0  # scales that no noise reaches: one block is enough
+NO_NOISE_SCALES = 25.0  # scales that no noise reaches: one block is enough once the scale is known
 FORGETS = 80.0  # blocks that mean and scale remember
 NORMAL_SCALE = 1.25  # scale of a normal number over the mean of its size
 SLOWLY = 0.1  # of the usual pace at which what is suspicious teaches
@@ -55,7 +55,7 @@ class Cusum:
         """One block, of which so much either way counts for nothing; whether there is an alarm."""
         off = x - self.mean
         z = copysign(max(abs(off) - allowed, 0.0), off) / self.scale
-        sure = abs(z) > NO_NOISE_SCALES
+        sure = self._count >= ENOUGH and abs(z) > NO_NOISE_SCALES
         if self._count >= ENOUGH or sure:
             step = min(max(z, -0.5 * H), 0.5 * H)
             self._up = min(max(self._up + step - K, 0.0), H)
