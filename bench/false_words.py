@@ -16,7 +16,8 @@ from typing import NamedTuple
 from bench import bench_output
 from bench.instrument_lies import MANOEUVRES, rows_of
 from bench.instrument_lies import WEATHERS as SEAS
-from bench.promise_returns import LEFT_OUT_S, SUSPECTED, heard, loop_for
+from bench.options import positive
+from bench.promise_returns import LEFT_OUT_S, SUSPECTED, heard, long_enough, loop_for
 from bench.reference import SeaCase, Weather, simulate
 from bench.stability.stability_tables import SHIPS
 
@@ -43,8 +44,8 @@ class TrueVoyage(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, help=f"voyages are appended to FOLDER/{KEPT}")
-    parser.add_argument("--rounds", type=int, default=1, help="of all manoeuvres, another seed each")
-    parser.add_argument("--seconds", type=float, default=900.0, metavar="S", help="of a voyage")
+    parser.add_argument("--rounds", type=positive, default=1, help="of all manoeuvres, another seed each")
+    parser.add_argument("--seconds", type=long_enough, default=900.0, metavar="S", help="of a voyage")
     bench_output.add_arguments(parser)
 
 

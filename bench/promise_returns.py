@@ -65,7 +65,7 @@ class Returned(NamedTuple):
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--hull", action="append", choices=HULLS, help="only this hull (repeat)")
     parser.add_argument(
-        "--seconds", type=_long_enough, default=900.0, metavar="S", help="of a healthy voyage (default: 900)"
+        "--seconds", type=long_enough, default=900.0, metavar="S", help="of a healthy voyage (default: 900)"
     )
     parser.add_argument("--no-lies", action="store_true", help="healthy voyages only")
     bench_output.add_arguments(parser)
@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _long_enough(text: str) -> float:
+def long_enough(text: str) -> float:
     """Seconds of a voyage of which more is judged than the first that are left out."""
     try:
         seconds = float(text)

@@ -5,6 +5,7 @@ import sys
 
 from bench.fleet import decision_fit, false_proofs, fleet_page, keep_answers, prior_fit, sparse_peer
 from bench.fleet import run as verb_run
+from twin.errors import TwinError
 
 
 def main() -> int:
@@ -24,7 +25,11 @@ def main() -> int:
     for name, module in each.items():
         module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))
     args = parser.parse_args()
-    return int(each[args.verb].run(args))
+    try:
+        return int(each[args.verb].run(args))
+    except TwinError as error:
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+        return error.exit_code
 
 
 if __name__ == "__main__":

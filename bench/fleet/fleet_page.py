@@ -17,6 +17,7 @@ from bench.fleet.answer_score import Row, Share, share
 from bench.fleet.hidden_causes import OF_THE_VOYAGE
 from bench.fleet.run import ROWS, read
 from bench.fleet.voyage_plan import practice
+from twin.errors import DataError
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.facts import Facts
 
@@ -39,7 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def rows_of(folders: Sequence[Path]) -> list[dict[str, Any]]:
-    """Rows of several folders, each key once, those that failed left out."""
+    """Rows of several folders, each key once, those that failed left out. DataError: a folder has none."""
+    for folder in folders:
+        if not (folder / ROWS).exists():
+            raise DataError(f"{folder}: no {ROWS} in it. Make it: python -m bench.fleet run {folder}")
     found = {row["key"]: row for folder in folders for row in read(folder / ROWS)}
     return [row for row in found.values() if "failed" not in row]
 

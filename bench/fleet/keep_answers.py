@@ -8,6 +8,7 @@ from pathlib import Path
 
 from bench.fleet import decision_fit, kept_rows
 from bench.fleet.fleet_page import rows_of
+from twin.errors import UsageError
 
 RESULTS = Path(__file__).resolve().parents[2] / "docs" / "results"
 TABLE, FACTS, FIT = RESULTS / "fleet.csv", RESULTS / "fleet_facts.jsonl", RESULTS / "fleet_fit.json"
@@ -39,6 +40,8 @@ def run(args: argparse.Namespace) -> int:
     if args.anew:
         kept_rows.write_anew(rows_of(args.anew), TABLE, FACTS)
     else:
+        if not any(getattr(args, asked) for asked in kept_rows.TIMES):
+            raise UsageError("no folder of answers is given: --first FOLDER, or --anew FOLDER.")
         answers = [(row, asked) for asked in kept_rows.TIMES for row in rows_of(getattr(args, asked))]
         kept_rows.write(answers, TABLE, FACTS)
     rows = kept_rows.read(TABLE, FACTS)

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from bench.fleet.__main__ import main
 from bench.fleet.prior_fit import STANDING, TERMS, WIDTHS, Likelihood, gains, learned, page
+from twin.errors import DataError
 
 TRUE = WIDTHS * np.geomspace(0.1, 2.0, WIDTHS.size)
 
@@ -41,3 +43,10 @@ def test_the_page_has_a_line_for_each_term_and_each_weight_of_what_stands():
     text = "\n".join(page(ships(9)))
     assert all(f"| {name} |" in text for name in TERMS)
     assert all(f"\n| {c:g} |" in text for c in STANDING)
+
+
+def test_a_folder_without_ships_or_answers_is_one_line(tmp_path, monkeypatch, capsys):
+    for verb in ("prior", "peer", "table"):
+        monkeypatch.setattr("sys.argv", ["bench.fleet", verb, str(tmp_path)])
+        assert main() == DataError.exit_code
+        assert capsys.readouterr().err.count("\n") == 1
