@@ -11,7 +11,7 @@ from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibration_lines import terminal_lines
-from twin.study.calibration.core_fit import calibrate as fit_core
+from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, split
 from twin.study.calibration.worse import refusal
@@ -127,11 +127,12 @@ def calibrate(
 def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progress) -> Calibration:
     """The same of voyages that are read already."""
     fitted, held, words = split(every, kept)
-    done = fit_core(fitted, held, ship, tell)
-    why = refusal(ship, done.result["held_out"], done.result["unexcited"])
+    first = last = fitted_core(fitted, held, ship, tell)
+    why = refusal(ship, first.held_out, first.unexcited)
     if words == LAST and not why:
         tell("once more, with every voyage")
-        done = fit_core(every, held, ship, tell, done.result["fitted_by"]).with_errors_of(done)
+        last = fitted_core(every, held, ship, tell, first.chosen.way)
+    done = last.calibrated(tell, first)
     r = done.result
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
     checks = of_voyages([s.voyage for s in (*every, *kept)], ship)

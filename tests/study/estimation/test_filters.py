@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from twin.study.estimation.filters import STATES, Filters, NoiseVariances, RunsAway, Stretches
+from twin.study.estimation.filters import (
+    STATES,
+    Filters,
+    NoiseVariances,
+    RunsAway,
+    Stretches,
+    lower_inverse,
+)
 
 STEPS, SEED = 400, 5
 
@@ -79,3 +86,10 @@ def test_of_faults_of_several_instruments_each_column_is_as_if_it_were_alone():
         assert every[..., 1 + j] == pytest.approx(white({j: turn})[..., 1 + j], rel=1e-5)
         assert np.abs(every[..., 1 + j] - none[..., 1 + j]).max() > 0.1
     assert np.array_equal(every[..., [0, 2]], none[..., [0, 2]])
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5, 8, 11])
+def test_a_lower_triangle_is_inverted_as_by_a_general_inverse(n: int) -> None:
+    draw = np.random.default_rng(SEED).standard_normal((3, 4, n, n))
+    L = np.linalg.cholesky(draw @ draw.swapaxes(-1, -2) + np.eye(n))
+    np.testing.assert_allclose(lower_inverse(L), np.linalg.inv(L), rtol=1e-10, atol=1e-12)

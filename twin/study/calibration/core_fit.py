@@ -16,7 +16,7 @@ from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.own_instruments import own_instruments
 from twin.study.calibration.parts import placed, significant, with_or_without_wind
 from twin.study.calibration.usual import significantly_there, usual
-from twin.study.calibration.ways import best_way
+from twin.study.calibration.ways import FittedShip, best_way
 from twin.study.estimation.columns import Unknown, core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import NoiseModel
@@ -55,12 +55,6 @@ class Calibrated:
     ship: Ship
     result: dict[str, Any]
 
-    def with_errors_of(self, other: "Calibrated") -> "Calibrated":
-        """The same ship with the errors as they were measured when not every voyage was used yet."""
-        measured = {name: other.result[name] for name in ("held_out", "by_regime")}
-        remembered = {name: other.ship.notes["structural"][name] for name in measured}
-        return Calibrated(noted(self.ship, "structural", remembered), self.result | measured)
-
 
 @dataclass(frozen=True)
 class Core:
@@ -80,13 +74,52 @@ class Core:
     temper: float
 
 
+@dataclass(frozen=True)
+class FittedCore:
+    """A ship with its core fitted, before it is known what is usual on it."""
+
+    begun: Ship  # with the core as it was, and its instruments as kinematics find them
+    core: Core
+    chosen: FittedShip
+    held_out: list[dict[str, Any]]  # by horizon, the error before the fit beside that after it
+    instruments: dict[str, Any]  # numbers of instruments that became a part of the ship
+
+    @property
+    def unexcited(self) -> list[str]:
+        """Derivatives of which the voyages say nothing."""
+        return [n for d in self.core.derivatives if not d.excited for n in d.unknown.names]
+
+    def calibrated(
+        self, progress: Callable[[str], None], measured_by: "FittedCore | None" = None
+    ) -> Calibrated:
+        """With what is usual on this ship. `measured_by`: the fit whose errors on what was held out count,
+        where this one has used every voyage."""
+        progress("estimating the baseline of this ship")
+        lasting_ones = usual(self.chosen.ship, self.core.tracks, self.core.noise_model)
+        by = measured_by or self
+        errors_of = {"held_out": by.chosen.off.by_horizon, "by_regime": by.chosen.off.by_regime}
+        after = noted(self.chosen.ship, "structural", lasting_ones | errors_of)
+        result = _result(self.begun, after, self, by.held_out)
+        return Calibrated(after, plain(result))
+
+
 def calibrate(
     fitted: Sequence[Sailed],
     held_out: HeldOut,
     ship: Ship,
     progress: Callable[[str], None] = lambda text: None,
-    by: str | None = None,
 ) -> Calibrated:
+    """Fit the core to the tracks, and learn what is usual on this ship."""
+    return fitted_core(fitted, held_out, ship, progress).calibrated(progress)
+
+
+def fitted_core(
+    fitted: Sequence[Sailed],
+    held_out: HeldOut,
+    ship: Ship,
+    progress: Callable[[str], None] = lambda text: None,
+    by: str | None = None,
+) -> FittedCore:
     """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
     one of FITTED_BY; None: the one that predicts what was held out better."""
     first, sailed = ship, [s.track for s in fitted]
@@ -113,12 +146,12 @@ def calibrate(
         found_curve=bool(curve),
         progress=progress,
     )
-    progress("estimating the baseline of this ship")
-    lasting_ones = usual(chosen.ship, core.tracks, core.noise_model)
-    judged = {"held_out": chosen.off.by_horizon, "by_regime": chosen.off.by_regime}
-    after = noted(chosen.ship, "structural", lasting_ones | judged)
-    result = _result(ship, after, core, chosen.way, errors(Model.of(first), held_out).by_horizon)
-    return Calibrated(after, plain(result | {"instruments": own.written}))
+    before = errors(Model.of(first), held_out).by_horizon
+    rows = [
+        e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
+        for b, e in zip(before, chosen.off.by_horizon, strict=True)
+    ]
+    return FittedCore(ship, core, chosen, rows, own.written)
 
 
 def _with_antenna(
@@ -243,16 +276,16 @@ def _found_here(name: str, ship: Ship, core: Core) -> bool:
     )
 
 
-def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
+def _result(ship: Ship, after: Ship, found: FittedCore, held_out: list[dict[str, Any]]) -> dict[str, Any]:
     """What --json holds."""
-    lasting_ones = after.notes["structural"]
+    core, lasting_ones = found.core, after.notes["structural"]
     lags = [e.__name__ for e in searched_parts(ship) if e not in PARTS.values()]
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
         "derivatives": [_row(d, n, ship, after) for d in core.derivatives for n in d.unknown.names],
-        "unexcited": [n for d in core.derivatives if not d.excited for n in d.unknown.names],
-        "fitted_by": by,
+        "unexcited": found.unexcited,
+        "fitted_by": found.chosen.way,
         **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
         "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
         "waves": waves_on(core.tracks),
@@ -263,10 +296,8 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "floor": asdict(core.noise_model),
         "temper": core.temper,
         "by_regime": lasting_ones["by_regime"],
-        "held_out": [
-            e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
-            for b, e in zip(before, lasting_ones["held_out"], strict=True)
-        ],
+        "held_out": held_out,
+        "instruments": found.instruments,
     }
 
 

@@ -17,7 +17,6 @@ from twin.recording.jsonable import plain
 from twin.study.calibration.usual import LASTING_SE
 from twin.study.instruments.corrections import effects_of_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
-from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
 from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
 from twin.study.reference.sailed import Sailed
@@ -43,7 +42,7 @@ def own_instruments(
 ) -> OwnInstruments:
     """Ask the reference voyages; where they cannot be asked (no heading), the ship is as it was."""
     try:
-        asked = on_references([_readings(s) for s in fitted], float(ship.L_pp))
+        asked = on_references([s.readings for s in fitted], float(ship.L_pp))
     except DataError:
         return OwnInstruments(_without_record(ship), None, {})
     written: dict[str, dict[str, dict[str, Any]]] = {}
@@ -87,19 +86,6 @@ def _voyages_known(asked: OnReferences, fault: str) -> int:
     names = [UNKNOWNS[i].name for i in members(fault)]
     usual = [(width[n], asked.record.numbers[n]) for n in names if n in asked.record.numbers]
     return max(sum(v.sd < UNINFORMATIVE * w for v in u.voyages) for w, u in usual)
-
-
-def _readings(s: Sailed) -> Readings:
-    """The readings of what is used of this voyage for the fit."""
-    read = of_voyage(s.voyage)
-    start = float(s.voyage.time_s[0])
-    first, last = start + float(s.track.t[0]), start + float(s.track.t[-1])
-
-    def used(x: ReadingSamples) -> ReadingSamples:
-        ok = (x.t >= first) & (x.t <= last)
-        return x if ok.all() else ReadingSamples(x.t[ok], x.y[ok])
-
-    return replace(read, by={k: used(x) for k, x in read.by.items()})
 
 
 def _without_record(ship: Ship) -> Ship:

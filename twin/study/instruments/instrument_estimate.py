@@ -2,6 +2,7 @@
 known from them."""
 
 from collections.abc import Callable, Sequence
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,6 +19,8 @@ __all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
 ROUNDS = 4  # selections, each about a new fit
 OWN_TURN_LOG_BAYES = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
 Progress = Callable[[str], None]
+# by the length of the ship [m]; a calibration asks the same voyages twice
+KNOWN_TURNS: WeakKeyDictionary[Readings, dict[float, float]] = WeakKeyDictionary()
 
 
 def estimate(
@@ -72,7 +75,14 @@ def _problems(
 
 def _itself(r: Readings, length: float, progress: Progress) -> float:
     """How much likelier (log) the readings are if the receiver turned its velocity itself than if the compass
-    did."""
+    did. Asked once of the same readings."""
+    known = KNOWN_TURNS.setdefault(r, {})
+    if length not in known:
+        known[length] = _likelier_itself(r, length, progress)
+    return known[length]
+
+
+def _likelier_itself(r: Readings, length: float, progress: Progress) -> float:
     progress(f"{r.name}: whose attitude turned the velocity?")
     sides = [Problem(r, length, own) for own in (False, True)]
     told = [fit([p], [u.name for u in UNKNOWNS], rounds=4).log_likelihood for p in sides]

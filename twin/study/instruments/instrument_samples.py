@@ -35,11 +35,11 @@ class ReadingSamples:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Readings:
-    """One voyage. `by`: place (N, E), velocity (north, east, or ahead and to starboard where `own`), heading,
-    rate, log, wind (from, in the ship's axes), roll. `own`: whether the receiver turned its velocity by an
-    attitude of its own; None: the samples do not tell."""
+    """One voyage; equal only to itself. `by`: place (N, E), velocity (north, east, or ahead and to starboard
+    where `own`), heading, rate, log, wind (from, in the ship's axes), roll. `own`: whether the receiver
+    turned its velocity by an attitude of its own; None: the samples do not tell."""
 
     name: str
     by: Mapping[str, ReadingSamples]
