@@ -128,7 +128,7 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     """The same of voyages that are read already."""
     fitted, held, words = split(every, kept)
     first = last = fitted_core(fitted, held, ship, tell)
-    why = refusal(ship, first.held_out, first.unexcited)
+    why = refusal(ship, first.held_out, first.core.unexcited)
     if words == LAST and not why:
         tell("once more, with every voyage")
         last = fitted_core(every, held, ship, tell, first.chosen.way)

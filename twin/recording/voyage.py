@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Voyage:
     """Samples at `time_s` (N,) [s, increasing]; `columns`: (N,) float64 in the unit of the channel's name.
 

@@ -8,7 +8,7 @@ import pytest
 
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibration_lines import terminal_lines
-from twin.study.calibration.core_fit import calibrate
+from twin.study.calibration.core_fit import fitted_core
 from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.reference.sailed import sailed
 
@@ -32,7 +32,7 @@ def smoothed(voyage: Voyage) -> Voyage:
 def calibrated(voyages, tanker):
     """The published tanker calibrated on three voyages with such a receiver."""
     fitted = [sailed(smoothed(voyages[name]), tanker) for name in ("calm", "nothing", "calm again")]
-    return calibrate(fitted, [(fitted[1].track, 0)], tanker, by="steps")
+    return fitted_core(fitted, [(fitted[1].track, 0)], tanker, by="steps").calibrated()
 
 
 def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):

@@ -19,6 +19,7 @@ from twin.recording.voyage import Voyage
 from twin.study.instruments.arrow import Block, reduce
 from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_lines import as_json, terminal_lines
+from twin.study.instruments.instrument_samples import of_voyage
 from twin.study.instruments.spline import Spline
 
 HEADING, RATE, LOG = "heading_true_north_deg", "yaw_rate_degps", "surge_velocity_through_water_mps"
@@ -117,6 +118,12 @@ def test_whose_attitude_turned_the_velocity_is_the_same_on_all_voyages_of_a_ship
     assert estimate([short], 100.0).own == (False,)
     assert estimate([short, zigzag], 100.0).own == (True, True)
     assert estimate([short], 100.0, own=True).own == (True,)
+
+
+def test_the_same_readings_are_asked_once_whose_attitude_turned_the_velocity(healthy):
+    readings, first, again = of_voyage(voyage({n: x[:200] for n, x in healthy.items()}, "")), [], []
+    assert estimate([readings], 100.0, first.append).own == estimate([readings], 100.0, again.append).own
+    assert [sum("whose attitude" in line for line in lines) for lines in (first, again)] == [1, 0]
 
 
 def test_a_straight_course_says_that_ages_cannot_be_known(healthy):

@@ -4,7 +4,7 @@ from typing import Any
 
 from twin.num import as_given, num
 from twin.recording.checks import losses
-from twin.study.calibration.core_fit import PARTS
+from twin.study.calibration.calibration_record import PARTS
 from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
 from twin.study.track.jumps import jumps_in_words

@@ -3,49 +3,30 @@ unexplained."""
 
 import datetime
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from twin.physics.effect import Effect
-from twin.physics.effects import of_role, of_ship
+from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
+from twin.study.calibration.calibration_record import PARTS, Core, record, remembering, searched_parts
 from twin.study.calibration.held_out import HeldOut, errors
 from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.own_instruments import own_instruments
 from twin.study.calibration.parts import placed, significant, with_or_without_wind
-from twin.study.calibration.usual import significantly_there, usual
+from twin.study.calibration.usual import usual
 from twin.study.calibration.ways import FittedShip, best_way
 from twin.study.estimation.columns import Unknown, core_unknowns
 from twin.study.estimation.fit import Fit, fit
-from twin.study.estimation.innovations import NoiseModel
-from twin.study.estimation.start import waves_on
-from twin.study.reference.derivatives import (
-    Derivative,
-    first_prior,
-    informed_by,
-    noted,
-    with_derivatives,
-)
+from twin.study.reference.derivatives import first_prior, informed_by, noted, with_derivatives
 from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
-from twin.study.reference.steering_gear import gears_of, with_or_without_gear
+from twin.study.reference.steering_gear import with_or_without_gear
 from twin.study.reference.structure import structural_noise
-from twin.study.reference.weather_baseline import FAINT
-from twin.study.track.jumps import jumps_on
 from twin.study.track.track import Track
-
-SCHEMA_VERSION = 1
-# of the ship and not of the core, found with it; their numbers stand under these keys in --json
-PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind", "compass")}
-
-
-def searched_parts(ship: Ship) -> tuple[type[Effect], ...]:
-    """Of the ship and not of the core, and found by the probability of the voyages (the antenna: by
-    predictions): its steering gear or its actuators' lags, and wind."""
-    return (*(gear for gears in gears_of(ship) for gear in gears), PARTS["wind"])
 
 
 @dataclass(frozen=True)
@@ -54,24 +35,6 @@ class Calibrated:
 
     ship: Ship
     result: dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Core:
-    """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
-
-    tracks: list[Track]  # with what waves do to it taken for that
-    model: Model
-    derivatives: list[Derivative]
-    # of the ship file; gears and wind among them if the voyages asked for these
-    effects: tuple[Effect, ...]
-    # of the parts that were searched and of the antenna, with their standard errors
-    numbers: dict[str, dict[str, dict[str, Any]]]
-    searched: tuple[type[Effect], ...]
-    curve: tuple[Unknown, ...]  # of the compass's deviation, where the voyages clearly ask for one beside it
-    antenna: Effect | None  # where it was found, if not where the ship file has it
-    noise_model: NoiseModel
-    temper: float
 
 
 @dataclass(frozen=True)
@@ -84,13 +47,10 @@ class FittedCore:
     held_out: list[dict[str, Any]]  # by horizon, the error before the fit beside that after it
     instruments: dict[str, Any]  # numbers of instruments that became a part of the ship
 
-    @property
-    def unexcited(self) -> list[str]:
-        """Derivatives of which the voyages say nothing."""
-        return [n for d in self.core.derivatives if not d.excited for n in d.unknown.names]
-
     def calibrated(
-        self, progress: Callable[[str], None], measured_by: "FittedCore | None" = None
+        self,
+        progress: Callable[[str], None] = lambda text: None,
+        measured_by: "FittedCore | None" = None,
     ) -> Calibrated:
         """With what is usual on this ship. `measured_by`: the fit whose errors on what was held out count,
         where this one has used every voyage."""
@@ -99,8 +59,8 @@ class FittedCore:
         by = measured_by or self
         errors_of = {"held_out": by.chosen.off.by_horizon, "by_regime": by.chosen.off.by_regime}
         after = noted(self.chosen.ship, "structural", lasting_ones | errors_of)
-        result = _result(self.begun, after, self, by.held_out)
-        return Calibrated(after, plain(result))
+        result = record(self.begun, after, self.core, self.chosen.way, by.held_out)
+        return Calibrated(after, plain(result | {"instruments": self.instruments}))
 
 
 def calibrate(
@@ -136,7 +96,7 @@ def fitted_core(
         progress("fitting again, with the antenna where it was found")
         core = _with_antenna(core.antenna, sailed, begun, progress, curve)
     held_out = [(swung(t, core.model), first) for t, first in held_out]
-    steps = _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
+    steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
     chosen = best_way(
         steps,
         core.tracks,
@@ -242,71 +202,3 @@ def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
 def _beside(ship: Ship, core: Core) -> Ship:
     """The ship with the fitted derivatives, and with what was searched beside them and found."""
     return replace(with_derivatives(ship, core.derivatives), effects=core.effects)
-
-
-def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
-    """The ship with what remains of these voyages, in place of what an earlier calibration left."""
-    today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
-    # tomorrow's wind is another one
-    names = [type(e).__name__ for e in ship.effects if not e.of_recorded_weather()]
-    structural = {
-        "floor": plain(asdict(core.noise_model)),
-        "temper": core.temper,
-        "date": today,
-        "voyages": voyages,
-        "beside_effects": names,
-    }
-    after = noted(
-        ship,
-        "effects",
-        {
-            name: numbers
-            for name, numbers in core.numbers.items()
-            if numbers and _found_here(name, ship, core)
-        },
-    )
-    return replace(after, notes={**after.notes, "structural": structural})
-
-
-def _found_here(name: str, ship: Ship, core: Core) -> bool:
-    """Whether a part of it is in the ship file as this calibration found it."""
-    there = [e for e in ship.effects if type(e) in core.searched]
-    return name in (type(e).__name__ for e in there) or (
-        core.antenna is not None and core.antenna in ship.effects
-    )
-
-
-def _result(ship: Ship, after: Ship, found: FittedCore, held_out: list[dict[str, Any]]) -> dict[str, Any]:
-    """What --json holds."""
-    core, lasting_ones = found.core, after.notes["structural"]
-    lags = [e.__name__ for e in searched_parts(ship) if e not in PARTS.values()]
-    return {
-        "schema_version": SCHEMA_VERSION,
-        "ship": ship.name,
-        "derivatives": [_row(d, n, ship, after) for d in core.derivatives for n in d.unknown.names],
-        "unexcited": found.unexcited,
-        "fitted_by": found.chosen.way,
-        **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
-        "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
-        "waves": waves_on(core.tracks),
-        "jumps": jumps_on(core.tracks),
-        "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
-        "usual": significantly_there(after, lasting_ones),
-        "between_voyages": lasting_ones["between_voyages"],
-        "floor": asdict(core.noise_model),
-        "temper": core.temper,
-        "by_regime": lasting_ones["by_regime"],
-        "held_out": held_out,
-        "instruments": found.instruments,
-    }
-
-
-def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
-    """The numbers of a part of it that this calibration put into the ship file."""
-    numbers = core.numbers.get(owner, {}) if _found_here(owner, after, core) else {}
-    return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
-
-
-def _row(d: Derivative, name: str, ship: Ship, after: Ship) -> dict[str, Any]:
-    before, value = (float(s.derivative(name)) for s in (ship, after))
-    return {"name": name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}

@@ -9,14 +9,17 @@ the core (reference/nuisance.py), for which rudder and shaft tell of them too.""
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from twin.errors import DataError, SettingsError
 from twin.physics.effects import find
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
+from twin.recording.voyage import Voyage
 from twin.study.calibration.usual import LASTING_SE
 from twin.study.instruments.corrections import effects_of_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
+from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
 from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
 from twin.study.reference.sailed import Sailed
@@ -25,6 +28,8 @@ AGE = "gnss_delay"  # the fault that is the receiver's age
 LEAST_REFERENCES = (
     3  # voyages that tell of a number before it is called the same on each: two show no scatter
 )
+# by the times of the first and the last sample used [s]; a calibration asks the same voyages twice
+READINGS_BY_SPAN: WeakKeyDictionary[Voyage, dict[tuple[float, float], Readings]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,7 @@ def own_instruments(
 ) -> OwnInstruments:
     """Ask the reference voyages; where they cannot be asked (no heading), the ship is as it was."""
     try:
-        asked = on_references([s.readings for s in fitted], float(ship.L_pp))
+        asked = on_references([_readings(s) for s in fitted], float(ship.L_pp))
     except DataError:
         return OwnInstruments(_without_record(ship), None, {})
     written: dict[str, dict[str, dict[str, Any]]] = {}
@@ -86,6 +91,26 @@ def _voyages_known(asked: OnReferences, fault: str) -> int:
     names = [UNKNOWNS[i].name for i in members(fault)]
     usual = [(width[n], asked.record.numbers[n]) for n in names if n in asked.record.numbers]
     return max(sum(v.sd < UNINFORMATIVE * w for v in u.voyages) for w, u in usual)
+
+
+def _readings(s: Sailed) -> Readings:
+    """The readings of what is used of this voyage for the fit."""
+    start = float(s.voyage.time_s[0])
+    span = start + float(s.track.t[0]), start + float(s.track.t[-1])
+    known = READINGS_BY_SPAN.setdefault(s.voyage, {})
+    if span not in known:
+        known[span] = _used(s.voyage, *span)
+    return known[span]
+
+
+def _used(voyage: Voyage, first: float, last: float) -> Readings:
+    read = of_voyage(voyage)
+
+    def used(x: ReadingSamples) -> ReadingSamples:
+        ok = (x.t >= first) & (x.t <= last)
+        return x if ok.all() else ReadingSamples(x.t[ok], x.y[ok])
+
+    return replace(read, by={k: used(x) for k, x in read.by.items()})
 
 
 def _without_record(ship: Ship) -> Ship:

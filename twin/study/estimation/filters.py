@@ -175,9 +175,9 @@ class _On:
 
 
 def lower_inverse(L: np.ndarray) -> np.ndarray:
-    """(..., n, n) of lower triangular ones: from the diagonal on, blocks twice as large each time, of all
-    matrices at once. A third of what a general inverse takes for some hundred of them. Source: Golub & Van
-    Loan (2013) Matrix computations, sec. 3.1."""
+    """The inverses (..., n, n) of lower triangles `L` (..., n, n), in units of one over theirs: blocks twice
+    as large each time, of all at once. A third of what a general inverse takes for some hundred of them.
+    Source: Golub & Van Loan (2013) Matrix computations, sec. 3.1."""
     n, out = L.shape[-1], np.zeros_like(L)
     _diagonal(out)[...] = 1.0 / _diagonal(L)
     size = 1

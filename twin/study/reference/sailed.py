@@ -3,8 +3,7 @@ feed."""
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any
 
 from twin.errors import DataError
@@ -13,7 +12,6 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
 from twin.study.reference.seaway import swung
 from twin.study.track.track import Track, track
 
@@ -25,19 +23,6 @@ class Sailed:
     voyage: Voyage
     track: Track
     sha256: str
-
-    @cached_property
-    def readings(self) -> Readings:
-        """What each instrument said on what is used of this voyage."""
-        read = of_voyage(self.voyage)
-        start = float(self.voyage.time_s[0])
-        first, last = start + float(self.track.t[0]), start + float(self.track.t[-1])
-
-        def used(x: ReadingSamples) -> ReadingSamples:
-            ok = (x.t >= first) & (x.t <= last)
-            return x if ok.all() else ReadingSamples(x.t[ok], x.y[ok])
-
-        return replace(read, by={k: used(x) for k, x in read.by.items()})
 
     def provenance(self) -> dict[str, Any]:
         """What a ship file notes of a voyage: its name, the hash of its samples, its start."""
