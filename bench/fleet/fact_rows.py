@@ -31,6 +31,7 @@ KEPT_FACTS = (
     "verdict",
     "reason",
     "missing",
+    "further",
     "more",
     "one_of",
     "probabilities",

@@ -89,6 +89,7 @@ DIAGNOSE = (
     JsonKey("sentence", "", "the sentence that goes with the verdict", FACTS),
     JsonKey("reason", "", "the rule that decided (docs/diagnosis.md, section 7)", FACTS),
     JsonKey("missing[]", "", "effects that are named, lasting causes first", NAMED),
+    JsonKey("further[]", "", "of these, what is named only with the others in the model", NAMED),
     JsonKey("more", "", "whether something is left beside what is named", FACTS),
     JsonKey("one_of[]", "", "the fewest effects of which one is surely there", "the verdict is undecided"),
     JsonKey("probabilities.nothing_missing", "1", "how often no cause was there on random ships so answered"),

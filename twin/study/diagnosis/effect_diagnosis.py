@@ -1,7 +1,7 @@
 """`twin diagnose`: which physical effect is missing, in newtons, with its confidence, or an honest answer
 that is none."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,17 +13,16 @@ from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
-from twin.study.diagnosis.assemble import assemble, of_tracks, unjudged_because
-from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics, suspected_instruments
+from twin.study.diagnosis.answer import Answer, answer
+from twin.study.diagnosis.assemble import assemble, unjudged_because
 from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of_unknown
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.consider import Considered, consider
-from twin.study.diagnosis.decision import Decision, decide
+from twin.study.diagnosis.consider import Considered
+from twin.study.diagnosis.further import with_further
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found
-from twin.study.diagnosis.search import search
 from twin.study.diagnosis.verdict import (
     alike,
     capped,
@@ -31,7 +30,6 @@ from twin.study.diagnosis.verdict import (
     restless_water,
     rivals,
     typical_force,
-    weights,
 )
 from twin.study.estimation.start import waves_on
 from twin.study.reference.healthy import Healthy
@@ -49,7 +47,7 @@ class Diagnosed:
 
     result: dict[str, Any]
     case: Case
-    found: dict[tuple[str, ...], Found]
+    found: Mapping[tuple[str, ...], Found]
 
 
 def diagnose(
@@ -60,24 +58,17 @@ def diagnose(
 ) -> Diagnosed:
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
-    weighed, found, seen = search(case, progress)
-    w, asked = weights(case, weighed, found), None
-    if instrument_suspected(case, w.best.effects):
-        progress("checking the instruments against each other, without the ship model")
-        asked = kinematics(voyages, ship)
-        if asked and (wanted := suspected_instruments(case, asked)):
-            case = of_tracks(case.tracks, ship, references, progress, wanted)
-            weighed, found, seen = search(case, progress)
-            w = weights(case, weighed, found)
-    progress("computing the facts")
-    considered = consider(case, weighed, found, seen, w, asked)
-    facts, decision = considered.facts, decide(considered.facts)
+    told = with_further(
+        answer(case, voyages, ship, references, progress), voyages, ship, references, progress
+    )
+    case, weighed, found, w = told.case, told.weighed, told.found, told.weights
+    considered, decision, facts = told.considered, told.decision, told.considered.facts
     nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing)
     p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
     likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST_PROBABILITY][:SHOWN]
     likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
     progress("predicting held-out parts")
-    candidates = [_candidate(case, weighed, found, considered, decision, name, p[name]) for name in likely]
+    candidates = [_candidate(told, name, p[name]) for name in likely]
     listed = [c for c in candidates if c]
     if w.best.effects:
         progress("estimating each part of the voyages by itself")
@@ -85,7 +76,7 @@ def diagnose(
         for c in listed:
             if c["effect"] in parts:
                 c["over_time"] = parts[c["effect"]]
-    visible = {n: share for n, share in w.effects.items() if seen[n]}
+    visible = {n: share for n, share in w.effects.items() if told.seen[n]}
     base = found[considered.base]
     result = {
         "schema_version": SCHEMA_VERSION,
@@ -93,15 +84,14 @@ def diagnose(
         "verdict": decision.verdict,
         "reason": decision.reason,
         "missing": list(decision.missing),
+        "further": list(told.further),
         "more": decision.more,
         "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
         **_healthy(considered.healthy),
         "probabilities": {"nothing_missing": nothing, "unknown": of_unknown(facts, decision)},
         "candidates": listed,
         "rivals": rivals(weighed, found),
-        "resembles": [
-            _candidate(case, weighed, found, considered, decision, n, w.unnamed[n]) for n in facts.resembles
-        ],
+        "resembles": [_candidate(told, n, w.unnamed[n]) for n in facts.resembles],
         "answer": {
             "not_named": decision.not_named,
             "lasting": [n for n in decision.missing if case.catalogue[n].lasts()],
@@ -128,7 +118,7 @@ def diagnose(
         "as_on_references": list(case.as_before),
         "not_visible": [
             n
-            for n, can in seen.items()
+            for n, can in told.seen.items()
             if not can and n not in [*decision.missing, *case.as_before, *case.present]
         ],
         "floor": {
@@ -157,19 +147,12 @@ def _healthy(found: Healthy | None) -> dict[str, Any]:
     }
 
 
-def _candidate(
-    case: Case,
-    weighed: Sequence[Any],
-    found: dict[tuple[str, ...], Found],
-    considered: Considered,
-    decision: Decision,
-    name: str,
-    posterior: float,
-) -> dict[str, Any]:
+def _candidate(told: Answer, name: str, posterior: float) -> dict[str, Any]:
     """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the
     best set that holds them."""
+    case, weighed, found, considered = told.case, told.weighed, told.found, told.considered
     sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
-    sets.sort(key=lambda s: name not in decision.missing or set(s) != set(decision.missing))
+    sets.sort(key=lambda s: name not in told.decision.missing or s != told.shown)
     if not sets:
         return {}
     best = found[sets[0]]
@@ -178,7 +161,7 @@ def _candidate(
         "belongs_to": case.catalogue[name].belongs_to,
         "probability": capped(posterior)
         if name in case.weather
-        else of_cause(considered.facts, decision, name, posterior),
+        else of_cause(considered.facts, told.decision, name, posterior),
         "posterior": capped(posterior),
         "on_references": _on_references(considered, name),
         "parameters": parameters(case, sized(case, best), name),
@@ -200,14 +183,14 @@ def _on_references(considered: Considered, name: str) -> float | None:
     return next((c.reached for c in considered.facts.causes if c.effect == name), None)
 
 
-def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:
+def _without(case: Case, found: Mapping[tuple[str, ...], Found], considered: Considered, name: str) -> float:
     """Open-loop error without a cause: with the day's weather alone; without a kind of weather: of the model
     as it is [m]."""
     return found[() if name in case.weather else considered.base].open_loop_error_m
 
 
 def _weather(
-    case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], Found], name: str, probability: float
+    case: Case, weighed: Sequence[Any], found: Mapping[tuple[str, ...], Found], name: str, probability: float
 ) -> dict[str, Any]:
     """One kind of today's water and weather, with its numbers, as it stands in the likeliest set that holds
     it; or how restless the water is."""
@@ -232,7 +215,7 @@ def _weather(
 
 def _next(
     case: Case,
-    found: dict[tuple[str, ...], Found],
+    found: Mapping[tuple[str, ...], Found],
     verdict: str,
     missing: Sequence[str],
     candidates: Sequence[dict[str, Any]],

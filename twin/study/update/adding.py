@@ -18,8 +18,8 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.recording.jsonable import short
 from twin.study.diagnosis.altered import sized
+from twin.study.diagnosis.as_filed import in_file, model_with
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, refine, standing
@@ -94,7 +94,7 @@ class Fitted:
             part = reduce(normal.only(of != k), case.nuisance, case.unknowns, case.effects, case.temper, at)
             z, left = self.found.posterior.z.copy(), given(part, self.found.posterior.z, ~lasts)
             z[lasts] = boxed(left, chosen, posterior(left, chosen)).z
-            models.append(_with(self.case, self.names, z))
+            models.append(model_with(self.case, self.names, z))
         return models
 
 
@@ -142,7 +142,7 @@ def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
     """What was found of the named effects, and of what stands beside them."""
     numbers = _numbers(case, found)
     return Fitted(
-        _with(case, names, found.posterior.z),
+        model_with(case, names, found.posterior.z),
         [n for n in numbers if n.effect in names],
         [n for n in numbers if n.effect not in names],
         names,
@@ -210,28 +210,6 @@ def _relinearised(case: Case, chosen: Sets, start: Found | None) -> Found:
     return refine(case, chosen, scenario, z, (), part=part)[0]
 
 
-def _with(case: Case, names: Sets, z: np.ndarray) -> Model:
-    """The ship's model with the named effects at these numbers (prior widths of `case.effects`), as a file
-    would hold them."""
-    model = case.model
-    for name in names:
-        own = {
-            u.name: _in_file(u.centre + u.sd * float(x), u.lo, u.hi)
-            for u, x in zip(case.effects, z, strict=True)
-            if u.owner == name
-        }
-        present = next((e for e in model.effects if type(e).__name__ == name), None) or case.catalogue[
-            name
-        ].absent(model.ship)
-        model = model.but(present.but(**own))
-    return model
-
-
-def _in_file(value: float, low: float, high: float) -> float:
-    """A number with as many digits as a file should hold, still inside its box."""
-    return min(max(float(short(value)), low), high)
-
-
 def _numbers(case: Case, found: Found) -> list[Number]:
     """Every number of the hypothesis, as the diagnosis tells it."""
     told: Posterior = sized(case, found)
@@ -241,7 +219,7 @@ def _numbers(case: Case, found: Found) -> list[Number]:
         for i, u in enumerate(case.effects):
             if u.owner == name:
                 sd, p = u.sd * float(np.sqrt(told.covariance[i, i])), said.get(u.name)
-                value = _in_file(u.centre + u.sd * float(found.posterior.z[i]), u.lo, u.hi)
+                value = in_file(u.centre + u.sd * float(found.posterior.z[i]), u.lo, u.hi)
                 low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
                 if p:
                     low, high = float(p["low95"]), float(p["high95"])  # type: ignore[arg-type]

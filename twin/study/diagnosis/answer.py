@@ -1,0 +1,70 @@
+"""The answer to one search: what was weighed, the facts, and the decision."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from twin.physics.ship import Ship
+from twin.recording.voyage import Voyage
+from twin.study.diagnosis.assemble import of_tracks
+from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics, suspected_instruments
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.consider import Considered, consider
+from twin.study.diagnosis.decision import Decision, decide
+from twin.study.diagnosis.refine import Found, Sets
+from twin.study.diagnosis.search import search
+from twin.study.diagnosis.verdict import Weights, weights
+from twin.study.reference.evidence import Hypothesis
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the voyages of a case say."""
+
+    case: Case
+    weighed: Sequence[Hypothesis]  # the likeliest first
+    found: Mapping[Sets, Found]
+    seen: Mapping[str, bool]  # whether each candidate, had it its plausible size, would have shown
+    weights: Weights
+    considered: Considered
+    decision: Decision
+    # causes that are named only with the others in the model, and the set in which all stand, fitted together
+    further: Sets = ()
+    joined: Sets = ()
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Effects of ship and instruments that are named."""
+        return self.case.causes(self.decision.missing)
+
+    @property
+    def shown(self) -> Sets:
+        """The set of effects in which what is named stands with its numbers."""
+        exact, named = self.case.ordered(self.decision.missing), set(self.decision.missing)
+        if self.joined or exact in self.found:
+            return self.joined or exact
+        wider = (h.effects for h in self.weighed if h.effects in self.found and named <= set(h.effects))
+        return next(wider, self.weights.best.effects)
+
+
+def answer(
+    case: Case,
+    voyages: Sequence[Voyage],
+    ship: Ship,
+    references: Sequence[Voyage] = (),
+    progress: Progress = lambda text: None,
+) -> Answer:
+    """Search, facts and decision; where an instrument is suspected, beside what kinematics say of it."""
+    weighed, found, seen = search(case, progress)
+    w, asked = weights(case, weighed, found), None
+    if instrument_suspected(case, w.best.effects):
+        progress("checking the instruments against each other, without the ship model")
+        asked = kinematics(voyages, ship)
+        if asked and (wanted := suspected_instruments(case, asked)):
+            case = of_tracks(case.tracks, ship, references, progress, wanted)
+            weighed, found, seen = search(case, progress)
+            w = weights(case, weighed, found)
+    progress("computing the facts")
+    considered = consider(case, weighed, found, seen, w, asked)
+    return Answer(case, weighed, found, seen, w, considered, decide(considered.facts))

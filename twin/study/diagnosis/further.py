@@ -1,0 +1,107 @@
+"""Further causes: the voyages are weighed again with what is named in the model, as an owner would do who
+adds it and asks once more.
+
+Beside a strong cause the search asks of a second one to explain more than it costs, and the decision asks it
+to stand out in the path of all. With the first in the model, the second is a first. What that is worth on
+random ships stands in docs/results/judgement.md."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from twin.physics.ship import Ship
+from twin.recording.voyage import Voyage
+from twin.study.diagnosis.answer import Answer, Progress, answer
+from twin.study.diagnosis.as_filed import model_with
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.consider import Considered
+from twin.study.diagnosis.decision import Decision
+from twin.study.diagnosis.open_loop_check import held_out_error
+from twin.study.diagnosis.refine import Found, Sets, refine
+from twin.study.diagnosis.search import MAX_CAUSES
+from twin.study.reference.evidence import boxed, posterior
+
+
+def with_further(
+    first: Answer,
+    voyages: Sequence[Voyage],
+    ship: Ship,
+    references: Sequence[Voyage] = (),
+    progress: Progress = lambda text: None,
+) -> Answer:
+    """The answer with what is named once its causes are in the model, until nothing more is, or there are
+    MAX_CAUSES; the same where it names none."""
+    while 0 < len(first.causes) < MAX_CAUSES:
+        progress(f"asking again, with {' and '.join(first.causes)} in the model")
+        case = assemble(voyages, _holding(first, ship), references, progress)
+        again = answer(case, voyages, case.model.ship, references, progress)
+        new = [n for n in again.causes if n not in first.causes and n in first.case.candidates]
+        if not new:
+            break
+        first = _joined(first, again, new[: MAX_CAUSES - len(first.causes)])
+    return first
+
+
+def _holding(first: Answer, ship: Ship) -> Ship:
+    """The ship with the causes that were named, as they stand in the likeliest set that holds them all."""
+    causes = set(first.causes)
+    likely = (h.effects for h in first.weighed if h.effects in first.found and causes <= set(h.effects))
+    z = first.found[next(likely, first.shown)].posterior.z
+    return replace(ship, effects=model_with(first.case, first.causes, z).effects)
+
+
+def _joined(first: Answer, again: Answer, new: Sequence[str]) -> Answer:
+    """The causes of both, with their numbers from one fit, and the facts of both."""
+    case = first.case
+    day = case.day(again.considered.facts.explanation)
+    chosen = case.ordered((*first.causes, *new, *day))
+    left = again.found[again.shown]
+    own = replace(_fitted(first, chosen), expected_error_m=left.expected_error_m)
+    own = replace(own, open_loop_error_m=held_out_error(case, own))
+    of_new = {n: again.weights.effects[n] for n in new}
+    return replace(
+        first,
+        weighed=[*first.weighed, own.hypothesis],
+        found={**first.found, chosen: own},
+        weights=replace(first.weights, effects={**first.weights.effects, **of_new}, best=own.hypothesis),
+        considered=_considered(first, again, new, chosen),
+        decision=_decision(first, again, new),
+        further=(*first.further, *new),
+        joined=chosen,
+    )
+
+
+def _fitted(first: Answer, chosen: Sets) -> Found:
+    """These effects where the voyages have them, begun where most of them were found to stand."""
+    parts = [f for s, f in first.found.items() if set(s) < set(chosen) and f.reduced is not None]
+    start = max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight))
+    assert start.reduced is not None
+    z = boxed(start.reduced, chosen, posterior(start.reduced, chosen)).z
+    return refine(first.case, chosen, start.hypothesis.scenario, z, (), part=start)[0]
+
+
+def _decision(first: Answer, again: Answer, new: Sequence[str]) -> Decision:
+    """What each of the two searches names, the first one first."""
+    weather = again.case.day(again.decision.missing)
+    named = (*first.causes, *new, *weather)
+    others = {**first.decision.not_named, **again.decision.not_named}
+    return replace(
+        again.decision, missing=named, not_named={n: why for n, why in others.items() if n not in named}
+    )
+
+
+def _considered(first: Answer, again: Answer, new: Sequence[str], chosen: Sets) -> Considered:
+    """The facts of what is left with all causes in the model, and of each cause where it was named."""
+    before, after = first.considered, again.considered
+    of_new = tuple(c for c in after.facts.causes if c.effect in new)
+    facts = replace(
+        after.facts,
+        nothing=before.facts.nothing,
+        error_nothing=before.facts.error_nothing,
+        power=before.facts.power,
+        reached=before.facts.reached,
+        likeliest=chosen,
+        explanation=chosen,
+        causes=(*(c for c in before.facts.causes if c.effect in first.causes), *of_new),
+    )
+    like = {**before.like, **{n: after.like[n] for n in new if n in after.like}}
+    return replace(before, facts=facts, pushes=after.pushes, like=like)
