@@ -19,7 +19,7 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Answer:
+class SearchAnswer:
     """What the voyages of a case say."""
 
     case: Case
@@ -54,7 +54,7 @@ def answer(
     ship: Ship,
     references: Sequence[Voyage] = (),
     progress: Progress = lambda text: None,
-) -> Answer:
+) -> SearchAnswer:
     """Search, facts and decision; where an instrument is suspected, beside what kinematics say of it."""
     weighed, found, seen = search(case, progress)
     w, asked = weights(case, weighed, found), None
@@ -67,4 +67,4 @@ def answer(
             w = weights(case, weighed, found)
     progress("computing the facts")
     considered = consider(case, weighed, found, seen, w, asked)
-    return Answer(case, weighed, found, seen, w, considered, decide(considered.facts))
+    return SearchAnswer(case, weighed, found, seen, w, considered, decide(considered.facts))

@@ -13,7 +13,7 @@ from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
-from twin.study.diagnosis.answer import Answer, answer
+from twin.study.diagnosis.answer import SearchAnswer, answer
 from twin.study.diagnosis.assemble import assemble, unjudged_because
 from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of_unknown
 from twin.study.diagnosis.case import SCENARIOS, Case
@@ -147,7 +147,7 @@ def _healthy(found: Healthy | None) -> dict[str, Any]:
     }
 
 
-def _candidate(told: Answer, name: str, posterior: float) -> dict[str, Any]:
+def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any]:
     """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the
     best set that holds them."""
     case, weighed, found, considered = told.case, told.weighed, told.found, told.considered

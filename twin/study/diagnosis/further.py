@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
-from twin.study.diagnosis.answer import Answer, Progress, answer
+from twin.study.diagnosis.answer import Progress, SearchAnswer, answer
 from twin.study.diagnosis.as_filed import model_with
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.consider import Considered
@@ -22,12 +22,12 @@ from twin.study.reference.evidence import boxed, posterior
 
 
 def with_further(
-    first: Answer,
+    first: SearchAnswer,
     voyages: Sequence[Voyage],
     ship: Ship,
     references: Sequence[Voyage] = (),
     progress: Progress = lambda text: None,
-) -> Answer:
+) -> SearchAnswer:
     """The answer with what is named once its causes are in the model, until nothing more is, or there are
     MAX_CAUSES; the same where it names none."""
     while 0 < len(first.causes) < MAX_CAUSES:
@@ -41,7 +41,7 @@ def with_further(
     return first
 
 
-def _holding(first: Answer, ship: Ship) -> Ship:
+def _holding(first: SearchAnswer, ship: Ship) -> Ship:
     """The ship with the causes that were named, as they stand in the likeliest set that holds them all."""
     causes = set(first.causes)
     likely = (h.effects for h in first.weighed if h.effects in first.found and causes <= set(h.effects))
@@ -49,7 +49,7 @@ def _holding(first: Answer, ship: Ship) -> Ship:
     return replace(ship, effects=model_with(first.case, first.causes, z).effects)
 
 
-def _joined(first: Answer, again: Answer, new: Sequence[str]) -> Answer:
+def _joined(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> SearchAnswer:
     """The causes of both, with their numbers from one fit, and the facts of both."""
     case = first.case
     day = case.day(again.considered.facts.explanation)
@@ -70,7 +70,7 @@ def _joined(first: Answer, again: Answer, new: Sequence[str]) -> Answer:
     )
 
 
-def _fitted(first: Answer, chosen: Sets) -> Found:
+def _fitted(first: SearchAnswer, chosen: Sets) -> Found:
     """These effects where the voyages have them, begun where most of them were found to stand."""
     parts = [f for s, f in first.found.items() if set(s) < set(chosen) and f.reduced is not None]
     start = max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight))
@@ -79,7 +79,7 @@ def _fitted(first: Answer, chosen: Sets) -> Found:
     return refine(first.case, chosen, start.hypothesis.scenario, z, (), part=start)[0]
 
 
-def _decision(first: Answer, again: Answer, new: Sequence[str]) -> Decision:
+def _decision(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> Decision:
     """What each of the two searches names, the first one first."""
     weather = again.case.day(again.decision.missing)
     named = (*first.causes, *new, *weather)
@@ -89,7 +89,7 @@ def _decision(first: Answer, again: Answer, new: Sequence[str]) -> Decision:
     )
 
 
-def _considered(first: Answer, again: Answer, new: Sequence[str], chosen: Sets) -> Considered:
+def _considered(first: SearchAnswer, again: SearchAnswer, new: Sequence[str], chosen: Sets) -> Considered:
     """The facts of what is left with all causes in the model, and of each cause where it was named."""
     before, after = first.considered, again.considered
     of_new = tuple(c for c in after.facts.causes if c.effect in new)

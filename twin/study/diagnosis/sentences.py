@@ -25,7 +25,7 @@ def named(result: Result) -> str:
     )
     return (
         f"Missing: {' and '.join(likely(result, n) for n in names)}. "
-        f"{first['says']}{size}{doubt}{small}{more}{_more(result)}"
+        f"{first['says']}{size}{doubt}{small}{further_in_words(result, names)}{more}{_more(result)}"
     )
 
 
@@ -211,6 +211,14 @@ def clock(seconds: float) -> str:
 
 def _is_weather(result: Result, name: str) -> bool:
     return name in {w["effect"] for w in result["weather"]}
+
+
+def further_in_words(result: Result, names: list[str]) -> str:
+    """Which of the names shows only with the others in the model."""
+    later = [n for n in names if n in result["further"]]
+    shows = "shows" if len(later) == 1 else "show"
+    others = " and ".join(n for n in names if n not in later)
+    return f" {' and '.join(later)} {shows} only with {others} in the model." if later else ""
 
 
 def _more(result: Result) -> str:

@@ -1,0 +1,97 @@
+"""What is named only with another cause in the model: asked again, added to the answer, fitted with it."""
+
+from dataclasses import replace
+
+import pytest
+
+import twin
+from tests.study.conftest import STEP_S, ship, voyage
+from twin.physics.effects import find
+from twin.study.diagnosis import further, sentences
+from twin.study.diagnosis.answer import answer
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.search import MAX_CAUSES
+
+BIAS_RAD, EXTRA = 0.03, 0.3
+
+
+def planted(name: str, **numbers: float):
+    return find(name).absent(ship()).but(**numbers)
+
+
+@pytest.fixture(scope="module")
+def calibrated():
+    """The tanker after two healthy voyages."""
+    return twin.calibrate(ship(), [voyage(seed=i, seconds=900.0, step=2 * STEP_S) for i in (11, 12)]).ship
+
+
+@pytest.fixture(scope="module")
+def biased():
+    """A voyage with a compass bias and a fouled hull."""
+    hidden = planted("HeadingBias", bias=BIAS_RAD), planted("HullFouling", extra=EXTRA)
+    return voyage(*hidden, seed=3, seconds=900.0)
+
+
+@pytest.fixture(scope="module")
+def half(calibrated, biased):
+    """An answer that names the bias alone."""
+    found = answer(assemble([biased], calibrated), [biased], calibrated)
+    assert set(found.causes) == {"HeadingBias", "HullFouling"}
+    return replace(found, decision=replace(found.decision, missing=("HeadingBias",)))
+
+
+@pytest.fixture(scope="module")
+def whole(half, calibrated, biased):
+    return further.with_further(half, [biased], calibrated)
+
+
+def test_a_cause_that_was_not_named_is_named_with_the_other_in_the_model(whole):
+    assert whole.causes == ("HeadingBias", "HullFouling")
+    assert whole.further == ("HullFouling",)
+    assert "HullFouling" not in whole.decision.not_named
+
+
+def test_the_numbers_of_all_causes_come_from_one_fit(whole):
+    found = whole.found[whole.shown]
+    assert set(whole.causes) <= set(found.hypothesis.effects)
+    size = {
+        f"{u.owner}.{u.name}": u.centre + u.sd * z
+        for u, z in zip(whole.case.effects, found.posterior.z, strict=True)
+    }
+    assert size["HeadingBias.bias"] == pytest.approx(BIAS_RAD, rel=0.2)
+    assert size["HullFouling.extra"] == pytest.approx(EXTRA, rel=0.4)
+    nothing = whole.found[whole.considered.base]
+    assert found.open_loop_error_m < 0.5 * nothing.open_loop_error_m
+
+
+def test_the_facts_are_those_of_the_whole(whole, half):
+    facts = whole.considered.facts
+    assert {c.effect for c in facts.causes} == set(whole.causes)
+    assert set(whole.causes) <= set(facts.explanation)
+    assert facts.error_nothing == half.considered.facts.error_nothing
+    assert facts.left.error < facts.error_nothing
+
+
+def test_a_single_cause_stays_single(calibrated):
+    said: list[str] = []
+    alone = voyage(planted("HeadingBias", bias=BIAS_RAD), seed=3, seconds=900.0)
+    found = twin.diagnose(calibrated, alone, progress=said.append)
+    assert (found.effects, found.data["further"]) == (["HeadingBias"], [])
+    assert sum(line.startswith("asking again, with HeadingBias in the model") for line in said) == 1
+
+
+@pytest.mark.parametrize("missing", [(), ("Current",), ("HeadingBias", "HullFouling", "RudderWear")])
+def test_an_answer_with_no_cause_or_with_as_many_as_there_may_be_is_not_asked_again(
+    half, calibrated, biased, missing
+):
+    assert MAX_CAUSES == 3
+    told, said = replace(half, decision=replace(half.decision, missing=missing)), []
+    assert further.with_further(told, [biased], calibrated, (), said.append) is told
+    assert said == []
+
+
+def test_the_sentence_says_what_shows_only_with_the_others():
+    names = ["HeadingBias", "HullFouling", "RudderWear"]
+    told = sentences.further_in_words({"further": names[1:]}, names)
+    assert told == " HullFouling and RudderWear show only with HeadingBias in the model."
+    assert sentences.further_in_words({"further": []}, names) == ""
