@@ -1,10 +1,10 @@
 """How often is something said of a healthy ship? `twin-bench false-words FOLDER`
 
 The loop that the service builds sails voyages of the reference sea on which nothing is wrong: every bundled
-hull, calm and in waves of several seas, manoeuvres in turn. Counted are beginnings: of an alarm that suspects an instrument,
-of the promise's being contradicted by samples (both are false words), and of every other time without a
-promise (withdrawn: it is at the edge of its operating set, its bound is too wide). A voyage's counts are
-appended to FOLDER/voyages.jsonl; the same command goes on where it was ended."""
+hull, calm and in waves of several seas, manoeuvres in turn. Counted are beginnings: of an alarm that suspects
+an instrument, of the promise's being contradicted by samples (both are false words), and of every other time
+without a promise (withdrawn: it is at the edge of its operating set, its bound is too wide). A voyage's
+counts are appended to FOLDER/voyages.jsonl; the same command goes on where it was ended."""
 
 import argparse
 import json

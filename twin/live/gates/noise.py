@@ -3,14 +3,15 @@
     d_k = y_k - (line between its two neighbours),    sigma^2 = -mean(d_k d_{k-1})
 
 White noise of variance sigma^2 gives d's neighbours the covariance -sigma^2; what the ship or a wave does is
-smooth from sample to sample, so its neighbours go the same way and it counts for nothing. What is usual is the
-instrument's own, learned while the ship sails, noise and waves together:
+smooth from sample to sample, so its neighbours go the same way and it counts for nothing. What is usual is
+the instrument's own, learned while the ship sails, noise and waves together:
 
     usual = mean |d_k d_{k-1}|/1.18             sigma^2 of white noise, more where the sea adds to it
 
-A short wave on a slow instrument goes to and fro between samples on one heading and smoothly on the next: its
-signed mean may be near nought, or below, while it is as rough as ever. Waves too short for a slow instrument look
-like noise of all instruments: one that is loud is believed to be so only while the others are not.
+A short wave on a slow instrument goes to and fro between samples on one heading and smoothly on the next:
+its signed mean may be near nought, or below, while it is as rough as ever. Waves too short for a slow
+instrument look like noise of all instruments: one that is loud is believed to be so only while the others
+are not.
 """
 
 from collections.abc import Mapping
