@@ -5,7 +5,7 @@ import random
 import pytest
 
 from twin.live.gates.crosscheck import STREAM_S, Stream
-from twin.live.gates.current_rate import APART, CurrentRate
+from twin.live.gates.current_rate import BLOCKS_APART, CurrentRate
 from twin.live.signals.measured import Measured
 
 U_0, NOISE_MPS = 8.0, 0.02
@@ -41,13 +41,13 @@ def test_a_random_walk_is_told_from_noise_and_its_gain_is_that_of_the_local_leve
             rate.feed(*(x + dice.gauss(0.0, 0.02) for x in at), 0.14, False)
             seen.append(rate.variance)
         assert sum(seen[200:]) / 3800 == pytest.approx(step * step, rel=0.15, abs=1e-5)
-    rate._near, rate._far = 0.004, 0.004 + 0.0025 * 2.0 * (APART - 1)
+    rate._near, rate._far = 0.004, 0.004 + 0.0025 * 2.0 * (BLOCKS_APART - 1)
     assert rate.gain(0.14) == pytest.approx(0.299, abs=0.001)
 
 
 def test_until_enough_is_known_the_current_has_no_gain_and_a_lie_teaches_little():
     rate = CurrentRate()
-    for k in range(APART + 11):
+    for k in range(BLOCKS_APART + 11):
         rate.feed(0.1 * k, 0.0, 0.14, False)
         assert rate.gain(0.14) == 0.0
     calm = CurrentRate()

@@ -14,7 +14,7 @@ from math import sqrt
 
 from twin.live.gates.cusum import ENOUGH, SLOWLY, WILD
 
-APART = 6  # blocks between the two whose difference tells of the current, n
+BLOCKS_APART = 6  # blocks between the two whose difference tells of the current, n
 REMEMBERED = 360.0  # blocks: an hour, for a current's unrest is a matter of tides and places
 
 
@@ -24,14 +24,14 @@ class CurrentRate:
     __slots__ = ("_blocks", "_count", "_far", "_near")
 
     def __init__(self) -> None:
-        self._blocks: deque[tuple[float, float]] = deque(maxlen=APART)
+        self._blocks: deque[tuple[float, float]] = deque(maxlen=BLOCKS_APART)
         self._count = 0
         self._near = self._far = 0.0  # mean squares of the differences to the last block and the n-th before
 
     @property
     def variance(self) -> float:
         """By which the current's components each change from block to block [m2/s2]."""
-        return max(self._far - self._near, 0.0) / (2.0 * (APART - 1))
+        return max(self._far - self._near, 0.0) / (2.0 * (BLOCKS_APART - 1))
 
     def gain(self, scale: float) -> float:
         """`scale`: the usual deviation of a block [m/s]; 0 until enough blocks are known."""
@@ -44,10 +44,10 @@ class CurrentRate:
     def feed(self, north: float, east: float, scale: float, suspicious: bool) -> None:
         """One block's current [m/s]; a suspicious one teaches little, a wild one as three usual ones."""
         blocks = self._blocks
-        if len(blocks) == APART:
+        if len(blocks) == BLOCKS_APART:
             self._count += 1
             a = (SLOWLY if suspicious else 1.0) / min(self._count, REMEMBERED)
-            most = WILD * WILD * max(self._far, 2.0 * scale * scale / APART)
+            most = WILD * WILD * max(self._far, 2.0 * scale * scale / BLOCKS_APART)
             near, far = (min((north - y[0]) ** 2 + (east - y[1]) ** 2, most) for y in (blocks[-1], blocks[0]))
             self._near += a * (near - self._near)
             self._far += a * (far - self._far)
