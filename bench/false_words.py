@@ -1,10 +1,10 @@
 """How often is something said of a healthy ship? `twin-bench false-words FOLDER`
 
 The loop that the service builds sails voyages of the reference sea on which nothing is wrong: every bundled
-hull, calm and in waves, manoeuvres in turn. Counted are beginnings: of an alarm that suspects an instrument,
-of the promise's being contradicted by samples (both are false words), and of every other time without a
-promise (withdrawn: it is at the edge of its operating set, its bound is too wide). A voyage's counts are
-appended to FOLDER/voyages.jsonl; the same command goes on where it was ended."""
+hull, calm and in waves of several seas, manoeuvres in turn. Counted are beginnings: of an alarm that suspects
+an instrument, of the promise's being contradicted by samples (both are false words), and of every other time
+without a promise (withdrawn: it is at the edge of its operating set, its bound is too wide). A voyage's
+counts are appended to FOLDER/voyages.jsonl; the same command goes on where it was ended."""
 
 import argparse
 import json
@@ -25,6 +25,14 @@ RATE_HZ = 10.0
 KEPT = "voyages.jsonl"
 # of a model as of the ship in TS-03, by Froude's law: lengths by 7 m / 320 m, speeds by its root
 MODEL_SEA = Weather(1.8, 60.0, 0.12, 0.041, 1.2, 60.0, 0.12, 240.0, 0.02)
+# seas other than those of the other benches: a ship's, and a boat's
+OTHERS = {
+    "moderate": ("TS-02", Weather(2.0, 60.0, 0.12, 0.04, 1.0, 60.0, 0.1, 240.0, 0.02)),
+    "rough": (
+        Weather(15.0, 60.0, 0.12, 3.0, 10.0, 60.0, 0.8, 240.0, 0.25),
+        Weather(4.0, 60.0, 0.12, 0.12, 2.0, 60.0, 0.3, 240.0, 0.05),
+    ),
+}
 NONE_SEEN = 3.0  # of a Poisson's mean: with 95 % no greater one shows nothing
 
 
@@ -80,11 +88,14 @@ def cases(rounds: int, seconds: float) -> Iterator[tuple[float, str, str, str | 
         for sea, weathers in SEAS.items()
         for hull, weather in zip(("kvlcc2", "container", "usv"), weathers, strict=True)
     } | {("kvlcc2_model", "calm"): "calm", ("kvlcc2_model", "waves"): MODEL_SEA}
+    for sea, (ships, boats) in OTHERS.items():
+        known |= {("kvlcc2", sea): ships, ("container", sea): ships, ("usv", sea): boats}
     for seed in range(rounds):
         for manoeuvre in MANOEUVRES:
             for hull in SHIPS:
-                for sea in SEAS:
-                    yield seconds, hull, sea, known[hull, sea], 400 + seed, manoeuvre
+                for sea in (*SEAS, *OTHERS):
+                    if (hull, sea) in known:
+                        yield seconds, hull, sea, known[hull, sea], 400 + seed, manoeuvre
 
 
 def healthy(

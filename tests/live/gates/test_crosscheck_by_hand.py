@@ -20,7 +20,7 @@ class Noted:
     """In a test's place: takes down what it is fed with."""
 
     def __init__(self):
-        self.fed, self.alarm, self.calm = [], False, True
+        self.fed, self.alarm, self.calm, self.suspicious = [], False, True, False
 
     def feed(self, x, allowed=0.0):
         self.fed.append((x, allowed))
@@ -121,13 +121,15 @@ def test_a_pause_begins_a_new_way():
 
 def test_the_current_is_remembered_north_and_east_and_what_parts_from_it_is_fed():
     """Test: blocks on changing headings in a current that changes; stand-ins for the tests. Expected: the current
-    follows as 1/k; what made an alarm is taken back, then it follows a tenth as fast."""
+    follows as 1/k, or as fast as it was seen to change; what made an alarm is taken back, then it follows a tenth
+    as fast, and so where a test is suspicious."""
     stream, tests = Stream(U_0), (Noted(), Noted())
     stream._tests = tests
     dice, now_s, known, unsuspected = random.Random(3), 0.0, None, 0j
     for k in range(70):
         psi, there = dice.uniform(-3.0, 3.0), complex(dice.uniform(-1.0, 1.0), dice.uniform(-1.0, 1.0))
         tests[1].alarm, tests[0].calm = k in (40, 41, 42), k % 7 != 3
+        tests[0].suspicious, tests[1].suspicious = k % 9 == 4, tests[1].alarm
         seen = there * cmath.exp(-1j * psi)
         for _ in range(20):
             si = {"u": 5.0, "v": 0.5, "u_r": 5.0 - seen.real, "v_r": 0.5 - seen.imag, "psi": psi}
@@ -141,7 +143,9 @@ def test_the_current_is_remembered_north_and_east_and_what_parts_from_it_is_fed(
         assert tests[1].fed[-1][0] == pytest.approx(off.imag, abs=1e-9)
         alarm = k in (40, 41, 42)
         # the stand-in is in alarm before it is fed as well, so what it taught is not taken back here
-        known += (0.1 if alarm else 1.0) / min(k + 1, 60) * off * cmath.exp(1j * psi)
+        pace = 0.1 if alarm or k % 9 == 4 else 1.0
+        share = max(1.0 / min(k + 1, 60), stream._rate.gain(0.14))
+        known += pace * share * off * cmath.exp(1j * psi)
         if tests[0].calm:
             unsuspected = known
         assert complex(*stream._current) == pytest.approx(known, abs=1e-9), k
@@ -161,7 +165,7 @@ def test_what_taught_since_it_became_suspicious_is_taken_back_once():
     test.calm = False
     block(2.0)
     assert stream._current == pytest.approx([1.5, 0.0]) and stream._unsuspected == pytest.approx((1.0, 0.0))
-    test.feed = lambda x: setattr(test, "alarm", True)
+    test.feed = lambda x: [setattr(test, word, True) for word in ("alarm", "suspicious")]
     block(3.0)  # the alarm: back to 1.0, then a tenth of a third of 3.0 - 1.5
     assert stream._current == pytest.approx([1.0 + 0.1 / 3.0 * 1.5, 0.0])
     block(3.0)  # still there: nothing is taken back again

@@ -86,16 +86,17 @@ class NoiseAgain:
         self.now += (seen - self.now) / min(self.n, 16)
         self.restless = known and self.now > 6.0 * self.floor
         self.loud = self.restless and (self.loud or self.now > 16.0 * self.floor)
-        self.usual += (0.1 if self.restless else 1.0) * (seen - self.usual) / min(self.n, 600)
+        size = abs(seen) / 1.18
+        self.usual += (0.1 if self.restless else 1.0) * (size - self.usual) / min(self.n, 600)
 
 
 @pytest.mark.parametrize("allowance", (1.0, 30.0))
 def test_the_noise_of_an_instrument_by_the_second_writing(allowance):
     """Expected: the same verdict and worth at each of 1500 samples; loud for a while, and quiet again."""
-    dice, one, other, fates = random.Random(2), Noise(allowance), NoiseAgain(allowance), []
+    dice, one, other, fates, value = random.Random(2), Noise(allowance), NoiseAgain(allowance), [], 0.0
     for k in range(1500):
-        size = 3.0 if 600 <= k < 800 else 0.4
-        change, dt = dice.gauss(0.0, size), dice.choice((0.1, 0.1, 0.2, 0.5, 0.51, 0.02))
+        before, value = value, dice.gauss(0.0, 3.0 if 600 <= k < 800 else 0.4)
+        change, dt = value - before, dice.choice((0.1, 0.1, 0.2, 0.5, 0.51, 0.02))
         change = 0.0 if k % 9 == 0 else 40.0 if k == 400 else change
         one.feed(change, dt)
         other.feed(change, dt)

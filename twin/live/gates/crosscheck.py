@@ -13,6 +13,7 @@ own. A text never holds a number, so that it can be counted.
 from collections.abc import Iterator
 from math import cos, hypot, sin
 
+from twin.live.gates.current_rate import CurrentRate
 from twin.live.gates.cusum import SLOWLY, Cusum
 from twin.live.gates.hole import is_hole
 from twin.live.gates.lacking import FAST, SLOW, CorrectedTick, Lacking
@@ -135,14 +136,16 @@ class Way:
 
 class Stream:
     """Speed over ground less speed through water: a current, which stays where it is over minutes, whichever
-    way it heads."""
+    way it heads; how fast it changes is learned (current_rate.py)."""
 
-    REMEMBERS = 60.0  # blocks
+    REMEMBERS = 60.0  # blocks at most
 
     def __init__(self, U_0: float):
-        self._tests = Cusum(0.015 * U_0 + 0.02, 0.0), Cusum(0.015 * U_0 + 0.02, 0.0)
+        self._least = 0.015 * U_0 + 0.02
+        self._tests = Cusum(self._least, 0.0), Cusum(self._least, 0.0)
         self._current: list[float] | None = None  # north, east
         self._unsuspected = (0.0, 0.0)  # the same when last nothing was suspicious
+        self._rate = CurrentRate()
         self._blocks = 0
         self._sums = [0.0] * 4
         self._since_s = 0.0
@@ -178,8 +181,9 @@ class Stream:
         if size < 0.9:  # it turned through too much of the compass
             return
         c, s = c / size, s / size
+        seen = ahead * c - aside * s, ahead * s + aside * c
         if self._current is None:
-            self._current = [ahead * c - aside * s, ahead * s + aside * c]
+            self._current = [*seen]
             self._unsuspected = self._current[0], self._current[1]
         now = self._current
         off = ahead - (now[0] * c + now[1] * s), (aside - (now[1] * c - now[0] * s)) if both else 0.0
@@ -189,7 +193,10 @@ class Stream:
         self._blocks += 1
         if self.alarm and not before:  # what taught since it became suspicious is taken back
             now[:] = self._unsuspected
-        a = (SLOWLY if self.alarm else 1.0) / min(self._blocks, self.REMEMBERS)
+        suspicious = any(test.suspicious for test in self._tests)
+        self._rate.feed(*seen, self._least, suspicious)
+        a = max(1.0 / min(self._blocks, self.REMEMBERS), self._rate.gain(self._least))
+        a *= SLOWLY if suspicious else 1.0
         ahead, aside = (test.usual(x) for test, x in zip(self._tests, off, strict=True))
         now[0] += a * (ahead * c - aside * s)
         now[1] += a * (ahead * s + aside * c)

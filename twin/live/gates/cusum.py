@@ -46,6 +46,11 @@ class Cusum:
         """Whether nothing at all speaks for a shift."""
         return self._up == self._down == 0.0
 
+    @property
+    def suspicious(self) -> bool:
+        """Whether so much speaks for a shift that little is taught."""
+        return self.alarm or max(self._up, self._down) > OVER * H
+
     def usual(self, off: float) -> float:
         """A deviation as far as it may teach: one wild block counts as three usual ones."""
         wide = WILD * self.scale
@@ -70,8 +75,7 @@ class Cusum:
     def _learn(self, x: float, odd: bool) -> None:
         """The mean and the usual deviation."""
         self._count += 1
-        suspicious = odd or self.alarm or max(self._up, self._down) > OVER * H
-        a = SLOWLY / FORGETS if suspicious else 1.0 / min(self._count, FORGETS)
+        a = SLOWLY / FORGETS if odd or self.suspicious else 1.0 / min(self._count, FORGETS)
         off = self.usual(x - self.mean)
         self.mean = min(max(self.mean + a * off, -self.most), self.most)
         self._size += a * (abs(off) - self._size)

@@ -3,9 +3,15 @@
     d_k = y_k - (line between its two neighbours),    sigma^2 = -mean(d_k d_{k-1})
 
 White noise of variance sigma^2 gives d's neighbours the covariance -sigma^2; what the ship or a wave does is
-smooth from sample to sample, so its neighbours go the same way and it counts for nothing. The usual variance
-is the instrument's own, learned while the ship sails. Waves too short for a slow instrument look like
-noise of all instruments: one that is loud is believed to be so only while the others are not.
+smooth from sample to sample, so its neighbours go the same way and it counts for nothing. What is usual is
+the instrument's own, learned while the ship sails, noise and waves together:
+
+    usual = mean |d_k d_{k-1}|/1.18             sigma^2 of white noise, more where the sea adds to it
+
+A short wave on a slow instrument goes to and fro between samples on one heading and smoothly on the next:
+its signed mean may be near nought, or below, while it is as rough as ever. Waves too short for a slow
+instrument look like noise of all instruments: one that is loud is believed to be so only while the others
+are not.
 """
 
 from collections.abc import Mapping
@@ -15,6 +21,7 @@ ENOUGH = 50  # samples from which the usual is known
 LOUD, QUIET = 16.0, 6.0  # times the usual variance: said above the first, until below the second
 SAMPLE_LIMIT = 4.0 * LOUD  # one sample counts no more than that: a spike is not noise
 SLOWLY = 0.1  # of the usual pace at which a loud channel teaches
+WHITE = 1.18  # mean |d_k d_{k-1}|/sigma^2 of white noise: (3/pi)(sqrt(1 - c^2) + c asin c), c = 2/3
 LEAST_NOISE = 0.01  # of what noise may add to a change (Gate.allowance): noise below it does not matter
 
 
@@ -100,4 +107,4 @@ class Noise:
         self.restless = known and self._now > QUIET * self._floor()
         self.loud = self.restless and (self.loud or self._now > LOUD * self._floor())
         pace = SLOWLY if self.restless else 1.0
-        self._usual += pace * (seen - self._usual) / min(self._count, USUALLY)
+        self._usual += pace * (abs(seen) / WHITE - self._usual) / min(self._count, USUALLY)
