@@ -94,7 +94,8 @@ def test_the_force_that_the_equations_lack_is_what_the_motion_did_beyond_them_ov
 
 
 def test_a_rudder_that_moves_teaches_what_is_usual_and_one_that_stands_is_held_against_it():
-    """Expected: moved is more than half a degree from where it stood; slow ships count as a tenth of the pressure."""
+    """Expected: moved is more than half a degree from where it stood, and not half a degree; slow ships count as a tenth
+    of the pressure."""
     ship = settled()
     ship.nu[0], turned = 0.8, 3e-5
     per_rad, usual, stands = 0.1 * A_RADIAN, 0.0, None
@@ -113,8 +114,18 @@ def test_a_rudder_that_moves_teaches_what_is_usual_and_one_that_stands_is_held_a
     ]  # fmt: skip
 
 
-def test_an_estimate_that_began_anew_settles_for_three_time_constants_before_anything_counts():
+def test_half_a_degree_is_no_movement():
+    ship = settled()
+    for delta, moved in ((0.0, True), (radians(0.5), False), (-radians(0.5), False), (radians(0.51), True)):
+        ship.delta = delta
+        ship.run(2.0)
+        assert (ship.rudder.fed[-1][1] == inf) is moved, delta
+
+
+@pytest.mark.parametrize("restarts", (0, 1))
+def test_an_estimate_that_began_anew_settles_for_three_time_constants_before_anything_counts(restarts):
     ship = Afloat()
+    ship.restarts = restarts
     ship.run(6.0 + 2.0)
     assert not ship.shaft.fed  # the tick at which it has settled begins the block
     ship.run(STEP_S)
