@@ -29,6 +29,7 @@ class Followed:
             ok=True, margin=0.6, step_margin=0.05, h=H, K=(0.4, 0.5, 0.6), heading_noise=0.02
         )
         self.periods = SimpleNamespace(count=lambda dt: 1 if dt <= H else 2 if dt <= 2.0 * H else 0)
+        self.takes = False  # whether a reset sets its bound
         self.left, self.nothing = None, []  # what leaves the set; answers of says_nothing, then None
         self.told, self.stepped, self.asked, self.looked_back = [], [], [], []
 
@@ -48,6 +49,8 @@ class Followed:
 
     def reset(self, nu, psi):
         self.told.append(("reset", nu, psi))
+        if self.takes:
+            self.beta, self.psi = nu, psi
 
     def step(self, got, sea, pulled, dt, acts, heading, turned):
         self.stepped.append((got, sea, pulled, dt, acts, heading, turned))

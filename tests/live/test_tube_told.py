@@ -42,8 +42,11 @@ def test_a_wave_height_that_comes_or_goes_begins_the_bound_anew_and_without_one_
     one.run(3, lost=("H_s",))
     assert one.why == ["no wave height"] * 3 and not one.said.inside
     assert told(one.tube)[0] == "know"  # the bound goes on
+    held_against, one.tube.takes = [], True
+    one.one._parity.feed = lambda measured, e, beta, dt: held_against.append(beta) or ""
     one.run()
     assert told(one.tube, 0) == ("reset", *bounds()) and one.why[-1].endswith("wait = 1.5 s")
+    assert held_against == [pytest.approx(INSTRUMENTS[0])]
     one.run(3)
     assert one.why[-1] is None
     one.run(lost=("H_s",))
@@ -84,6 +87,10 @@ def test_a_sample_that_contradicts_the_bound_takes_the_promise_away_for_a_minute
         assert one.why[-1] == one.one.broken != "" and not one.said.inside
     one.run()
     assert one.why[-1].endswith("wait = 1.5 s") and one.one._inside == 1 and one.one.broken == ""
+    assert told(one.tube) == (
+        "reset",
+        *bounds(),
+    )  # what was carried while it was contradicted is worth nothing
     one.run(2)
     assert not one.said.inside
     assert one.run().inside
