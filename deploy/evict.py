@@ -3,7 +3,7 @@
     python deploy/evict.py FOLDER
 
 What an installer has just written lies in the page cache in large pieces, and a process that touches one page
-of a library then maps the whole piece: up to 11 MB more than after the files have been read back from the disk.
+of a library then maps the whole piece: up to 11 MB more than of files read back.
 """
 
 import os
