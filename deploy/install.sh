@@ -46,6 +46,7 @@ pip --no-deps "$source"
 mkdir -p "$new/share/shiptwin"
 cp "$here"/*.md "$here"/*.sh "$here"/*.json "$here"/*.json5 "$here"/*.toml "$here"/*.service "$new/share/shiptwin/"
 "$new/bin/twin" --help >/dev/null || { echo "version $version does not even start: is $python the one that $source was made for?" >&2; exit 1; }
+"$new/bin/python" "$here/evict.py" "$new/lib" || true  # fresh files cost the service up to 11 MB of memory
 trap - EXIT
 
 echo "2/4 settings (those that are there stay)"

@@ -11,7 +11,6 @@ import math
 import os
 import sys
 import time
-import traceback
 from array import array
 from collections.abc import Callable
 from typing import Any
@@ -197,6 +196,8 @@ if __name__ == "__main__":
         print(json.dumps(MeasuredLoop(settings, mark, int(steps), int(parts), pace == "paced").run()))
         code = 0
     except BaseException:
+        import traceback  # which the service does without
+
         traceback.print_exc()
     finally:
         sys.stdout.flush()
