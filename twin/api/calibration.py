@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
 from twin.num import as_given, num
+from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
-from twin.study.calibration.held_out import LAST, split
+from twin.study.calibration.held_out import LAST, keeping, split
 from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
 
@@ -128,7 +129,8 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     """The same of voyages that are read already."""
     fitted, held, words = split(every, kept)
     first = last = fitted_core(fitted, held, ship, tell)
-    why = refusal(ship, first.held_out, first.core.unexcited)
+    by_horizon = zip(first.held_out, keeping(held, Model.of(ship)), strict=True)
+    why = refusal(ship, [e | {"kept_m": far} for e, far in by_horizon], first.core.unexcited)
     if words == LAST and not why:
         tell("once more, with every voyage")
         last = fitted_core(every, held, ship, tell, first.chosen.way)

@@ -38,3 +38,19 @@ def test_a_little_more_at_one_horizon_is_no_reason():
 
 def test_where_nothing_could_be_judged_nothing_is_refused():
     assert refusal(USV, [entry(10.0, 2.0, 9.0) | {"windows": 0}], []) == ""
+
+
+def test_a_better_heading_does_not_pay_for_a_place_worse_than_keeping_speed():
+    worse = [entry(10.0, 0.4, 0.7, 41.0, 5.0), entry(60.0, 2.3, 10.0, 90.0, 13.0)]
+    assert refusal(USV, worse, []) == ""
+    told = refusal(USV, [e | {"kept_m": 0.2} for e in worse], ["Y_vv"])
+    assert "worse than keeping its speeds (0.200 m)" in told and "10.0 m" in told
+
+
+def test_a_ship_that_sails_straight_may_be_worse_than_keeping_speed_if_it_got_better():
+    better = [entry(10.0, 0.7, 0.4) | {"kept_m": 0.1}, entry(60.0, 9.0, 6.0) | {"kept_m": 1.0}]
+    assert refusal(USV, better, []) == ""
+
+
+def test_a_place_that_grew_but_is_nearer_than_keeping_speed_is_judged_with_the_heading():
+    assert refusal(USV, [entry(10.0, 0.4, 0.7, 41.0, 5.0) | {"kept_m": 3.0}], []) == ""

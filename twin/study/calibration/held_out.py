@@ -50,6 +50,29 @@ def errors(model: Model, held_out: HeldOut) -> HeldOutErrors:
     )
 
 
+def keeping(held_out: HeldOut, model: Model) -> list[float]:
+    """How far off in place [m], mean over the same windows by horizon, a prediction is that knows nothing of
+    the ship: it keeps the speeds and the rate of turn with which it began. NaN without a window."""
+    means = []
+    for horizon in HORIZONS_S:
+        off = [_kept(track, first, model, horizon) for track, first in held_out]
+        found = np.concatenate([np.empty(0), *off])
+        means.append(float(found.mean()) if found.size else float("nan"))
+    return means
+
+
+def _kept(track: Track, first: int, model: Model, horizon_s: float) -> np.ndarray:
+    """Error in place [m] of each window: with u, v, r held, d(x + iy)/dt = (u + iv) exp(i (psi + r t))."""
+    windows = ends(track, fed(model, track)[0], [horizon_s])[0]
+    k = windows.at(horizon_s)
+    ok = windows.valid[k] & (windows.start >= first)
+    x, y, psi, u, v, r = track.state[windows.start[ok], :6].T
+    t = windows.lead[k] * track.h
+    chord = t * np.sinc(r * t / (2.0 * np.pi)) * np.exp(1j * (psi + 0.5 * r * t))  # of the circle's arc
+    there = windows.seen[windows.step[k][ok]]
+    return np.abs(x + 1j * y + (u + 1j * v) * chord - (there[:, 0] + 1j * there[:, 1]))
+
+
 def _mean(horizon_s: float, position: np.ndarray, heading: np.ndarray) -> dict[str, float]:
     place, turn = (float(e.mean()) if e.size else float("nan") for e in (position, heading))
     return {

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from math import log
 from typing import Any
 
+import numpy as np
+
 from twin.num import num
 from twin.physics.ship import Ship
 
@@ -27,10 +29,13 @@ def refusal(ship: Ship, held_out: Sequence[Mapping[str, Any]], unexcited: Sequen
     if not judged:
         return ""
     away = [e for e in judged if ran_away(ship, e)]
-    if not away and growth(judged) <= GREW:
+    idle = knows_nothing(judged)
+    if not away and not idle and growth(judged) <= GREW:
         return ""
     e = max(away or judged, key=lambda e: e["position_m"] / max(e["before_m"], 1e-9))
     what = "runs away" if away else "is worse than the one it began from"
+    if idle and not away:
+        what += f", and in place worse than keeping its speeds ({_far(e['kept_m'])})"
     before = f"{_far(e['before_m'])} and {num(e['before_deg'], 3)} deg"
     after = f"{_far(e['position_m'])} and {num(e['heading_deg'], 3)} deg"
     return (
@@ -51,6 +56,20 @@ def growth(judged: Sequence[Mapping[str, Any]]) -> float:
     names = (("position_m", "before_m"), ("heading_deg", "before_deg"))
     pairs = [(e[a], e[b]) for e in judged for a, b in names]
     return sum(log(max(a, 1e-9) / max(b, 1e-9)) for a, b in pairs) / len(pairs)
+
+
+def knows_nothing(judged: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether it got farther off in place than it was, and than a ship that keeps its speeds and its rate of
+    turn (`kept_m`), over all horizons: a better heading does not make up for that."""
+    with_kept = [e for e in judged if np.isfinite(e.get("kept_m", np.nan))]
+    grew = [_grew(with_kept, "position_m", against) for against in ("before_m", "kept_m")]
+    return bool(with_kept) and min(grew) > GREW
+
+
+def _grew(entries: Sequence[Mapping[str, Any]], after: str, before: str) -> float:
+    """Mean logarithm of one error over another."""
+    logs = [log(max(e[after], 1e-9) / max(e[before], 1e-9)) for e in entries]
+    return sum(logs) / max(len(logs), 1)
 
 
 def to_sail(unexcited: Sequence[str]) -> str:
