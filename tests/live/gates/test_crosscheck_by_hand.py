@@ -144,7 +144,7 @@ def test_the_current_is_remembered_north_and_east_and_what_parts_from_it_is_fed(
         alarm = k in (40, 41, 42)
         # the stand-in is in alarm before it is fed as well, so what it taught is not taken back here
         pace = 0.1 if alarm or k % 9 == 4 else 1.0
-        share = max(1.0 / min(k + 1, 60), stream._rate.gain(0.14))
+        share = 1.0 / min(k + 1, 60) if alarm else max(1.0 / min(k + 1, 60), stream._rate.gain(0.14))
         known += pace * share * off * cmath.exp(1j * psi)
         if tests[0].calm:
             unsuspected = known

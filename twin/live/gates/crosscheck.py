@@ -195,7 +195,9 @@ class Stream:
             now[:] = self._unsuspected
         suspicious = any(test.suspicious for test in self._tests)
         self._rate.feed(*seen, self._least, suspicious)
-        a = max(1.0 / min(self._blocks, self.REMEMBERS), self._rate.gain(self._least))
+        a = 1.0 / min(self._blocks, self.REMEMBERS)
+        if not self.alarm:  # what is told as a fault is no current, however fast that changes
+            a = max(a, self._rate.gain(self._least))
         a *= SLOWLY if suspicious else 1.0
         ahead, aside = (test.usual(x) for test, x in zip(self._tests, off, strict=True))
         now[0] += a * (ahead * c - aside * s)
