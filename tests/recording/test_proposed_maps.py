@@ -12,7 +12,7 @@ from twin.recording.formats.guess import guess
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_clock import clock_unit, text_format
-from twin.recording.suggest_map import suggestion
+from twin.recording.suggest_map import proved, suggestion
 
 KNOT = 1852.0 / 3600.0
 T = np.arange(400.0)
@@ -277,3 +277,15 @@ def test_what_a_check_proves_of_a_frame_is_in_the_proposal(tmp_path):
     v, text = read(path)
     agrees(v, ("surge_velocity_mps", "heading_true_north_deg"))
     assert text.count('frame = "earth"') == 2 and "prove. CONFIRM" in text
+
+
+def test_a_unit_of_time_that_a_check_proves_is_written_in():
+    """The name of the column says seconds, the ship's motion says milliseconds."""
+    said = '# velocity_frame: all of it agrees; that is believed. In the map: [time] unit = "ms".\n[time]\nunit = "s"\n'
+    time = {"column": "time_s", "unit": "s", "why": "unit by its name"}
+    assert proved({}, time, said)
+    assert time["unit"] == "ms" and time["why"].endswith("CONFIRM")
+    either = said.replace('"ms".', '"ms", or unit = "km" for positions')
+    untouched = {"column": "time_s", "unit": "s"}
+    assert not proved({}, untouched, either)
+    assert untouched["unit"] == "s"

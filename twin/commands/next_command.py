@@ -27,19 +27,20 @@ def after_map(files: Sequence[str], made: str | None) -> str:
     return f"next: read it, correct what is marked, then {by}"
 
 
-def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None) -> str:
-    """The same with the ship file to be corrected; a comparison, where one was written."""
-    if ship and output:
-        return f"twin compare {' '.join(voyages)} --ship {output}"
+def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None, faults: bool) -> str:
+    """The same with the ship file to be corrected; a comparison, where one was written, or where no fault was
+    seen."""
+    if not faults or (ship and output):
+        return f"twin compare {' '.join(voyages)} --ship {(faults and output) or ship or 'SHIP.toml'}"
     return f"twin instruments {' '.join(voyages)} --ship {ship or 'SHIP.toml'} -o corrected.toml"
 
 
 def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
     """The diagnosis; before it a calibration, where the ship never had one."""
-    diagnose = f"twin diagnose {' '.join(voyages)} --ship {ship} --report diagnose.html"
-    if result["horizons"][-1]["noise_floor"]["of"] == "sensors":
-        return f"twin calibrate REFERENCE.mcap --ship {ship} -o calibrated.toml, or {diagnose}"
-    return diagnose
+    calibrated = result["horizons"][-1]["noise_floor"]["of"] != "sensors"
+    by = ship if calibrated else "calibrated.toml"
+    diagnose = f"twin diagnose {' '.join(voyages)} --ship {by} --report diagnose.html"
+    return diagnose if calibrated else f"twin calibrate REFERENCE.mcap --ship {ship} -o {by}, then {diagnose}"
 
 
 def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:

@@ -22,6 +22,7 @@ from twin.recording.suggest_clock import time_entry
 from twin.recording.suggest_entries import Entry, best_guesses, proposed
 from twin.recording.suggest_log import of_signals
 
+CLOCK_PROVED = re.compile(r'In the map: \[time\] unit = "(\w+)"\.')
 PROVED = re.compile(r'that is believed\. In the map: (frame|unit) = "([^"]+)" for (both|[a-z_]+)\.')
 
 
@@ -48,20 +49,23 @@ def of_tables(files: Sequence[SeenColumns], paths: Sequence[Path]) -> str:
     time = time_entry(used or files)
     columns = proposed(files, taken, parts, time)
     text = with_verdict(written(files, time, columns), paths)
-    if proved(columns, text):
+    if proved(columns, time, text):
         text = with_verdict(written(files, time, columns), paths)
     return text + unused_columns(files, columns, time)
 
 
-def proved(columns: dict[str, Entry], text: str) -> bool:
+def proved(columns: dict[str, Entry], time: dict[str, Any], text: str) -> bool:
     """Writes a frame or a unit that a check proves into the entries; whether there was one."""
-    found = [f for line in text.splitlines() if line.startswith("# ") for f in PROVED.findall(line)]
+    said = "\n".join(line for line in text.splitlines() if line.startswith("# "))
+    found, clock = PROVED.findall(said), CLOCK_PROVED.findall(said)
+    if clock:
+        time |= {"unit": clock[0], "why": "unit as position, heading and turning prove. CONFIRM"}
     for key, value_of_it, whose in found:
         for channel in FRAMED if whose == "both" else (whose,):
             if channel in columns:
                 columns[channel].keys[key] = value_of_it
                 columns[channel].why.append(f"{key} as position, heading and turning prove. CONFIRM")
-    return bool(found)
+    return bool(found or clock)
 
 
 def written(files: Sequence[SeenColumns], time: dict[str, Any], columns: dict[str, Entry]) -> str:
