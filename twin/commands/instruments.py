@@ -46,8 +46,7 @@ def run(args: argparse.Namespace) -> int:
         command = f"twin instruments {' '.join(args.voyages)}{f' --ship {args.ship}' if ship else ''}"
         answer = with_request(done, command, ship=args.ship, voyages=args.voyages)
         whole.write_json(answer.to_dict(), args.json)
-    then = after_instruments(args.voyages, args.ship, args.output, bool(done.faults))
-    print(f"\nnext: {then}", file=page)
+    print("\nnext:", after_instruments(args.voyages, args.ship, args.output, bool(done.faults)), file=page)
     return 0
 
 

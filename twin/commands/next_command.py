@@ -28,8 +28,7 @@ def after_map(files: Sequence[str], made: str | None) -> str:
 
 
 def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None, faults: bool) -> str:
-    """The same with the ship file to be corrected; a comparison, where one was written, or where no fault was
-    seen."""
+    """The same with the ship file to be corrected; a comparison, where one was written or no fault seen."""
     if not faults or (ship and output):
         return f"twin compare {' '.join(voyages)} --ship {(faults and output) or ship or 'SHIP.toml'}"
     return f"twin instruments {' '.join(voyages)} --ship {ship or 'SHIP.toml'} -o corrected.toml"
