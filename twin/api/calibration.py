@@ -15,6 +15,7 @@ from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, keeping, split
+from twin.study.calibration.stages import Stages
 from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
 
@@ -128,6 +129,7 @@ def calibrate(
 def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progress) -> Calibration:
     """The same of voyages that are read already."""
     fitted, held, words = split(every, kept)
+    tell = Stages(tell, len(every) / len(fitted) if words == LAST else None)
     first = last = fitted_core(fitted, held, ship, tell)
     by_horizon = zip(first.held_out, keeping(held, Model.of(ship)), strict=True)
     why = refusal(ship, [e | {"kept_m": far} for e, far in by_horizon], first.core.unexcited)

@@ -1,0 +1,72 @@
+"""How far a calibration is, in the words of its stages."""
+
+import pytest
+
+from twin.study.calibration.stages import BASELINE, CORE_STAGES, FIT_STAGES, ONCE_MORE, PATH, Stages
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.s = 0.0
+
+    def __call__(self) -> float:
+        return self.s
+
+
+def run(stages: list[str], every: float | None, second_per: float = 1.0) -> list[str]:
+    """What is told when each stage takes `second_per` times its usual seconds."""
+    said: list[str] = []
+    clock = Clock()
+    told = Stages(said.append, every, clock)
+    for text in stages:
+        told(text)
+        usual = FIT_STAGES.get(text, 0.0)
+        clock.s += second_per * usual
+    return said
+
+
+def test_the_stages_of_one_fit_are_counted():
+    said = run([*FIT_STAGES, PATH, BASELINE], None)
+    assert [s.split(" (")[1].split(" of ")[0] for s in said] == [str(i + 1) for i in range(9)]
+    assert all("of 9" in s for s in said)
+
+
+def test_what_is_left_is_what_the_other_stages_take_on_this_machine():
+    """Twice as slow as usual: after the first fit's 17.8 s of work, 35.6 s; left are 1.0 and 7.5 s of work, 17 s."""
+    said = run([*FIT_STAGES, PATH], None, 2.0)
+    assert said[-1] == "fitting along the path (8 of 9, about 17 s left)"
+    assert "left" not in said[0]
+
+
+def test_a_second_fit_with_more_voyages_takes_longer_in_proportion():
+    said = run([*FIT_STAGES, PATH], 1.5, 10.0)
+    left = 10.0 * (1.0 + 1.5 * (sum(FIT_STAGES.values()) + 7.5)) / 60.0
+    assert said[-1].endswith(f"(8 of 17, about {left:.0f} min left)")
+    assert run([*FIT_STAGES, PATH, ONCE_MORE, *FIT_STAGES, BASELINE], 1.5)[-1].startswith(
+        f"{BASELINE} (17 of 17"
+    )
+
+
+def test_a_core_that_is_fitted_again_is_counted_once_more():
+    again = "fitting again, with the antenna where it was found"
+    said = run([*FIT_STAGES, again, *CORE_STAGES, PATH, BASELINE], None)
+    assert said[-1].startswith(f"{BASELINE} (16 of 16")
+    assert said[7].startswith(f"{again} (8 of 16")
+
+
+def test_a_stage_that_is_left_out_is_not_waited_for():
+    said = run([*FIT_STAGES, BASELINE], None)
+    assert said[-1].startswith(f"{BASELINE} (9 of 9")
+
+
+def test_other_words_are_told_as_they_are():
+    assert run(["HeadingLag: found"], None) == ["HeadingLag: found"]
+
+
+@pytest.mark.parametrize("text", [*FIT_STAGES, PATH, BASELINE])
+def test_every_stage_is_told_by_a_calibration(text):
+    """The words stand where the work is done; another word there would not be counted."""
+    from pathlib import Path
+
+    source = Path(__file__).parents[3] / "twin" / "study" / "calibration"
+    assert any(f'"{text}' in p.read_text() for p in source.glob("*.py") if p.name != "stages.py")
