@@ -121,8 +121,8 @@ def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) ->
     mend = (
         f"Correct {map_path}"
         if map_path
-        else f"Have a map proposed (twin import {path} --suggest-map -o map.toml), write that into a map where "
-        "the proposed one lacks it, and give it with --map"
+        else f"Have a map proposed (twin import {path} --suggest-map -o map.toml), write that into a map "
+        "where the proposed one lacks it, and give it with --map"
     )
     accept = " ".join(f"--accept {c.name}" for c in refused)
     said = " ".join(f"{c.name}: {c.text}" for c in refused)
