@@ -95,3 +95,22 @@ def test_the_sentence_says_what_shows_only_with_the_others():
     told = sentences.further_in_words({"further": names[1:]}, names)
     assert told == " HullFouling and RudderWear show only with HeadingBias in the model."
     assert sentences.further_in_words({"further": []}, names) == ""
+
+
+def test_the_set_is_fitted_also_where_the_first_answer_stood_beside_other_water(half):
+    """Beside a stream that the whole does without, no part of it was found: its guess is of first order."""
+    stream = {("HeadingBias", "Current"): half.found[half.shown]}
+    beside = replace(half, found=stream, joined=("HeadingBias", "Current"))
+    found = further._fitted(beside, half.case.ordered(("HeadingBias", "HullFouling")))
+    (at,) = (i for i, u in enumerate(half.case.effects) if (u.owner, u.name) == ("HeadingBias", "bias"))
+    size = half.case.effects[at].centre + half.case.effects[at].sd * found.posterior.z[at]
+    assert size == pytest.approx(BIAS_RAD, rel=0.2)
+
+
+def test_a_cause_that_ends_at_nothing_beside_the_others_is_not_one(whole):
+    found = whole.found[whole.joined]
+    assert further._stands(whole.case, found, whole.causes)
+    z = found.posterior.z.copy()
+    z[[u.owner == "HullFouling" for u in whole.case.effects]] = 0.0
+    gone = replace(found, posterior=replace(found.posterior, z=z))
+    assert not further._stands(whole.case, gone, whole.causes)

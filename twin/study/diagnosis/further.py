@@ -13,6 +13,7 @@ from twin.recording.voyage import Voyage
 from twin.study.diagnosis.answer import Progress, SearchAnswer, answer
 from twin.study.diagnosis.as_filed import model_with
 from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.consider import Considered
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.open_loop_check import held_out_error
@@ -32,12 +33,16 @@ def with_further(
     MAX_CAUSES; the same where it names none."""
     while 0 < len(first.causes) < MAX_CAUSES:
         progress(f"asking again, with {' and '.join(first.causes)} in the model")
-        case = assemble(voyages, _holding(first, ship), references, progress)
-        again = answer(case, voyages, case.model.ship, references, progress)
+        holding = _holding(first, ship)
+        case = assemble(voyages, holding, references, progress)
+        again = answer(case, voyages, holding, references, progress)
         new = [n for n in again.causes if n not in first.causes and n in first.case.candidates]
         if not new:
             break
-        first = _joined(first, again, new[: MAX_CAUSES - len(first.causes)])
+        wider = _joined(first, again, new[: MAX_CAUSES - len(first.causes)])
+        if not _stands(wider.case, wider.found[wider.joined], wider.causes):
+            break
+        first = wider
     return first
 
 
@@ -71,12 +76,21 @@ def _joined(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> Sea
 
 
 def _fitted(first: SearchAnswer, chosen: Sets) -> Found:
-    """These effects where the voyages have them, begun where most of them were found to stand."""
-    parts = [f for s, f in first.found.items() if set(s) < set(chosen) and f.reduced is not None]
-    start = max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight))
-    assert start.reduced is not None
-    z = boxed(start.reduced, chosen, posterior(start.reduced, chosen)).z
-    return refine(first.case, chosen, start.hypothesis.scenario, z, (), part=start)[0]
+    """These effects where the voyages have them, begun where most of them were found to stand, or at the
+    first-order guess about the first answer."""
+    case, found = first.case, first.found
+    parts = [f for s, f in found.items() if set(s) < set(chosen) and f.reduced is not None]
+    part = max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight), default=None)
+    start = part or found[first.shown]
+    about = start.reduced or case.reduced(case.lines, case.scenarios([start.hypothesis.scenario]))[0]
+    z = boxed(about, chosen, posterior(about, chosen)).z
+    return refine(case, chosen, start.hypothesis.scenario, z, (), part=part)[0]
+
+
+def _stands(case: Case, own: Found, names: Sequence[str]) -> bool:
+    """Whether none of these ended at nothing beside the others."""
+    z = own.posterior.z
+    return all(z[[i for i, u in enumerate(case.effects) if u.owner == name]].any() for name in names)
 
 
 def _decision(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> Decision:
