@@ -18,8 +18,8 @@ from twin.study.diagnosis.consider import Considered
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.refine import Found, Sets, refine
-from twin.study.diagnosis.search import MAX_CAUSES
-from twin.study.reference.evidence import boxed, posterior
+from twin.study.diagnosis.search import EARNED, MAX_CAUSES
+from twin.study.reference.evidence import boxed, posterior, weigh_with
 
 
 def with_further(
@@ -30,8 +30,8 @@ def with_further(
     progress: Progress = lambda text: None,
 ) -> SearchAnswer:
     """The answer with what is named once its causes are in the model, until nothing more is, or there are
-    MAX_CAUSES; the same where it names none."""
-    while 0 < len(first.causes) < MAX_CAUSES:
+    MAX_CAUSES; the same where it names none, or where no other cause deserves a second look."""
+    while 0 < len(first.causes) < MAX_CAUSES and _more_may_be(first):
         progress(f"asking again, with {' and '.join(first.causes)} in the model")
         holding = _holding(first, ship)
         case = assemble(voyages, holding, references, progress)
@@ -46,11 +46,30 @@ def with_further(
     return first
 
 
-def _holding(first: SearchAnswer, ship: Ship) -> Ship:
-    """The ship with the causes that were named, as they stand in the likeliest set that holds them all."""
+def _likeliest(first: SearchAnswer) -> Sets:
+    """The likeliest set that was relinearised and holds all causes that are named."""
     causes = set(first.causes)
     likely = (h.effects for h in first.weighed if h.effects in first.found and causes <= set(h.effects))
-    z = first.found[next(likely, first.shown)].posterior.z
+    return next(likely, first.shown)
+
+
+def _more_may_be(first: SearchAnswer) -> bool:
+    """Whether a cause that is not named stands beside those that are, or would add to their evidence, to
+    first order about them, as much as a second look asks for."""
+    case, chosen = first.case, _likeliest(first)
+    if len(case.names(chosen)) > len(first.causes):
+        return True
+    found = first.found[chosen]
+    if found.reduced is None:
+        return True
+    others = [n for n in case.names(case.candidates) if n not in chosen]
+    base = posterior(found.reduced, chosen).log_evidence
+    return any(e - base >= EARNED for _, e in weigh_with(found.reduced, chosen, others))
+
+
+def _holding(first: SearchAnswer, ship: Ship) -> Ship:
+    """The ship with the causes that were named, as they stand in the likeliest set that holds them all."""
+    z = first.found[_likeliest(first)].posterior.z
     return replace(ship, effects=model_with(first.case, first.causes, z).effects)
 
 
