@@ -53,9 +53,7 @@ def ran_away(ship: Ship, entry: Mapping[str, Any]) -> bool:
 
 def growth(judged: Sequence[Mapping[str, Any]]) -> float:
     """Mean logarithm of after over before, in place and heading over all horizons."""
-    names = (("position_m", "before_m"), ("heading_deg", "before_deg"))
-    pairs = [(e[a], e[b]) for e in judged for a, b in names]
-    return sum(log(max(a, 1e-9) / max(b, 1e-9)) for a, b in pairs) / len(pairs)
+    return 0.5 * (_grew(judged, "position_m", "before_m") + _grew(judged, "heading_deg", "before_deg"))
 
 
 def knows_nothing(judged: Sequence[Mapping[str, Any]]) -> bool:
