@@ -14,7 +14,7 @@ from twin.recording.voyage import Voyage
 from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
-from twin.study.calibration.held_out import LAST, keeping, split
+from twin.study.calibration.held_out import LAST, knowing_nothing, split
 from twin.study.calibration.stages import Stages
 from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
@@ -131,8 +131,8 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     fitted, held, words = split(every, kept)
     tell = Stages(tell, len(every) / len(fitted) if words == LAST else None)
     first = last = fitted_core(fitted, held, ship, tell)
-    by_horizon = zip(first.held_out, keeping(held, Model.of(ship)), strict=True)
-    why = refusal(ship, [e | {"kept_m": far} for e, far in by_horizon], first.core.unexcited)
+    by_horizon = zip(first.held_out, knowing_nothing(held, Model.of(ship)), strict=True)
+    why = refusal(ship, [e | far for e, far in by_horizon], first.core.unexcited)
     if words == LAST and not why:
         tell("once more, with every voyage")
         last = fitted_core(every, held, ship, tell, first.chosen.way)

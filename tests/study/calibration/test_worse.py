@@ -47,6 +47,22 @@ def test_a_better_heading_does_not_pay_for_a_place_worse_than_keeping_speed():
     assert "worse than keeping its speeds (0.200 m)" in told and "10.0 m" in told
 
 
+def test_of_a_boat_at_one_place_standing_still_is_what_it_must_not_be_worse_than():
+    """Expected: refused though it is nearer than keeping its speeds, by the name of the nearer prediction."""
+    worse = [
+        entry(10.0, 0.10, 0.25, 41.0, 5.0) | {"kept_m": 0.3, "stood_m": 0.2},
+        entry(60.0, 0.40, 1.50, 90.0, 13.0) | {"kept_m": 1.9, "stood_m": 0.7},
+    ]
+    told = refusal(USV, worse, ["Y_vv"])
+    assert "worse than standing still (0.700 m)" in told and "keeping" not in told
+    assert refusal(USV, [e | {"stood_m": 2.0} for e in worse], []) == ""
+
+
+def test_under_way_it_is_keeping_its_speeds():
+    worse = [entry(10.0, 0.4, 0.7, 41.0, 5.0) | {"kept_m": 0.2, "stood_m": 20.0}]
+    assert "worse than keeping its speeds (0.200 m)" in refusal(USV, worse, [])
+
+
 def test_a_ship_that_sails_straight_may_be_worse_than_keeping_speed_if_it_got_better():
     better = [entry(10.0, 0.7, 0.4) | {"kept_m": 0.1}, entry(60.0, 9.0, 6.0) | {"kept_m": 1.0}]
     assert refusal(USV, better, []) == ""

@@ -6,8 +6,9 @@ A command c (a share of full, or a pulse width counted from 1500 us in spans of 
     T_0 = T_ahead g(c - zero) - T_astern g(zero - c),   g(x) = linear e + (1 - linear) e^2,
     e = max(x - dead, 0)/(1 - dead)
 
-and with the water running along it, u_a, T = gain (T_0 - slow (T_ahead e_ahead + T_astern e_astern) u_a/U_0).
-Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9].
+and with the water running along it, u_a, T = k (T_0 - slow (T_ahead e_ahead + T_astern e_astern) u_a/U_0).
+Turns n give T = k rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9],
+k = gain own_gain: what the make gives over its curve, and what this one gives over its make.
 
 Of the thrust at rest astern `reverse` is there (blades are cambered for going ahead), and where the water
 runs against the thrust (second and fourth quadrant) the flow breaks down and 1/(1 + stall J^2) is left, with
@@ -44,6 +45,11 @@ from twin.physics.state import Number
 from .actuator_channels import CHANNELS_OF
 from .kinds import KINDS
 
+# By how much the thrust of healthy actuators of one make usually differs (standard deviation): a propeller's
+# pitch may be off by 3 % (ISO 484-2:2015, class III), and its thrust at rest goes with its pitch; and each
+# has aged by 4.5 % (0.3 of the prior of ThrusterWear, as a diagnosis takes any healthy ship).
+OF_ONE_MAKE = 0.05
+
 
 @dataclass(frozen=True)
 class Actuator:
@@ -59,6 +65,7 @@ class Actuator:
     x: Number = number(0.0, "m", -300.0, 300.0, "ahead of midship", key="x_m")
     y: Number = number(0.0, "m", -60.0, 60.0, "to starboard of the centreline", key="y_m")
     gain: Number = number(1.0, "-", 0.0, 5.0, "thrust over what its curve says", sd=0.2)
+    own_gain: Number = number(1.0, "-", 0.0, 5.0, "its own thrust over that of its make", sd=OF_ONE_MAKE)
     zero: Number = number(0.0, "-", -0.5, 0.5, "command at which it gives nothing", sd=0.01, of="command pwm")
     trim: Number = number(
         0.0, "rad", -3.2, 3.2, "true angle less the recorded one", sd=0.03, key="trim_rad", of="angle"
@@ -101,6 +108,11 @@ class Actuator:
     def but(self, **numbers: Number) -> Self:
         """The same with some of its numbers changed."""
         return replace(self, **numbers)
+
+    @cached_property
+    def strength(self) -> Number:
+        """Its own thrust over what the curve of its make says."""
+        return self.gain * self.own_gain
 
     @cached_property
     def attributes(self) -> tuple[str, ...]:
@@ -161,4 +173,4 @@ class Actuator:
 
 NUMBERS = {f.name: f for f in fields(Actuator) if f.metadata}
 BY_MAKE = ("ahead", "astern", "dead", "D", "K_T0", "pitch_0", "A_R", "U_half")  # as builders tell them
-OWN = ("gain", "zero", "trim")  # found for each; what else voyages tell of it is its make's
+OWN = ("own_gain", "zero", "trim")  # found for each; what else voyages tell of it is its make's

@@ -25,8 +25,8 @@ class OneActuator(Protocol):
         """To starboard of the centreline [m]."""
 
     @property
-    def gain(self) -> Number:
-        """Thrust over what its curve says [-]."""
+    def strength(self) -> Number:
+        """Its own thrust over what its curve says [-]."""
 
     @property
     def zero(self) -> Number:
@@ -119,7 +119,7 @@ def push(a: OneActuator, orders: Orders, u_a: Number, ship: ShipLike) -> Number:
     """Thrust [N] along the actuator's own axis, with the water running along it at u_a [m/s]."""
     has = a.keys
     if "thrust" in has:
-        return a.gain * orders[has["thrust"]]
+        return a.strength * orders[has["thrust"]]
     if "rate" in has:
         pitch = orders[has["pitch"]] / a.pitch_0 if "pitch" in has else 1.0
         return _by_turns(a, orders[has["rate"]], pitch, u_a, ship)
@@ -132,11 +132,11 @@ def _by_turns(a: OneActuator, n: Number, pitch: Number, u_a: Number, ship: ShipL
     at_rest = a.K_T0 * n * pitch + a.K_T0 * (1.0 - a.reverse) * positive(-drive)
     water = a.K_T1 * u_a / a.D
     line = (at_rest + water) * (1.0 - a.sag * _nearing(-at_rest * water, at_rest * at_rest))
-    T = a.gain * (ship.rho * a.D**4) * abs(n) * line
+    T = a.strength * (ship.rho * a.D**4) * abs(n) * line
     nD = n * a.D
     T = T * _left(a, positive(-drive * a.D * u_a) ** 2, nD**4)
     over = positive(abs(u_a) - a.K_T0 / (TINY - a.K_T1) * abs(drive) * a.D)
-    return T - a.gain * a.drag * (ship.rho * a.D**2) * _against(u_a, over)
+    return T - a.strength * a.drag * (ship.rho * a.D**2) * _against(u_a, over)
 
 
 def _by_command(a: OneActuator, c: Number, u_a: Number, ship: ShipLike) -> Number:
@@ -151,7 +151,7 @@ def _by_command(a: OneActuator, c: Number, u_a: Number, ship: ShipLike) -> Numbe
     sags = T_ahead * (on - less_on) * _nearing(less_on, on)
     sags = sags - T_astern * (off - less_off) * _nearing(less_off, off)
     over = positive(abs(w) - sqrt(on + off + 1e-9) / (a.slow + TINY))
-    return a.gain * (T - a.sag * sags - a.drag * a.ahead * _against(w, over))
+    return a.strength * (T - a.sag * sags - a.drag * a.ahead * _against(w, over))
 
 
 def _nearing(less: Number, at_rest: Number) -> Number:

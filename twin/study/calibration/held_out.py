@@ -50,19 +50,22 @@ def errors(model: Model, held_out: HeldOut) -> HeldOutErrors:
     )
 
 
-def keeping(held_out: HeldOut, model: Model) -> list[float]:
-    """How far off in place [m], mean over the same windows by horizon, a prediction is that knows nothing of
-    the ship: it keeps the speeds and the rate of turn with which it began. NaN without a window."""
+def knowing_nothing(held_out: HeldOut, model: Model) -> list[dict[str, float]]:
+    """How far off in place [m], mean over the same windows by horizon, predictions are that know nothing of
+    the ship: `kept_m` keeps the speeds and the rate of turn with which it began, `stood_m` stands still where
+    it began. NaN without a window."""
     means = []
     for horizon in HORIZONS_S:
-        off = [_kept(track, first, model, horizon) for track, first in held_out]
-        found = np.concatenate([np.empty(0), *off])
-        means.append(float(found.mean()) if found.size else float("nan"))
+        off = [_knowing_nothing(track, first, model, horizon) for track, first in held_out]
+        found = np.concatenate([np.empty((2, 0)), *off], axis=1)
+        kept, stood = found.mean(1).tolist() if found.size else (float("nan"), float("nan"))
+        means.append({"kept_m": kept, "stood_m": stood})
     return means
 
 
-def _kept(track: Track, first: int, model: Model, horizon_s: float) -> np.ndarray:
-    """Error in place [m] of each window: with u, v, r held, d(x + iy)/dt = (u + iv) exp(i (psi + r t))."""
+def _knowing_nothing(track: Track, first: int, model: Model, horizon_s: float) -> np.ndarray:
+    """(2, W) error in place [m] of each window: with u, v, r held, d(x + iy)/dt = (u + iv) exp(i (psi + r
+    t)); with u = v = 0."""
     windows = ends(track, fed(model, track)[0], [horizon_s])[0]
     k = windows.at(horizon_s)
     ok = windows.valid[k] & (windows.start >= first)
@@ -70,7 +73,8 @@ def _kept(track: Track, first: int, model: Model, horizon_s: float) -> np.ndarra
     t = windows.lead[k] * track.h
     chord = t * np.sinc(r * t / (2.0 * np.pi)) * np.exp(1j * (psi + 0.5 * r * t))  # of the circle's arc
     there = windows.seen[windows.step[k][ok]]
-    return np.abs(x + 1j * y + (u + 1j * v) * chord - (there[:, 0] + 1j * there[:, 1]))
+    to_go = there[:, 0] + 1j * there[:, 1] - (x + 1j * y)
+    return np.abs([(u + 1j * v) * chord - to_go, to_go])
 
 
 def _mean(horizon_s: float, position: np.ndarray, heading: np.ndarray) -> dict[str, float]:

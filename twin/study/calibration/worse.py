@@ -14,6 +14,8 @@ from twin.physics.ship import Ship
 
 GREW = 0.05  # mean logarithm of the errors in place and heading over all horizons, from which they grew
 FASTEST = 3.0  # times service speed: a model that gets farther off than that ran away
+# what a ship does that a model knows nothing of, by where its error stands: under way, or at one place
+KNOWING_NOTHING = {"kept_m": "keeping its speeds", "stood_m": "standing still"}
 # what excites derivatives whose names begin so
 MANOEUVRES = (
     (("X_",), "speed changes from stop to full and back"),
@@ -35,7 +37,7 @@ def refusal(ship: Ship, held_out: Sequence[Mapping[str, Any]], unexcited: Sequen
     e = max(away or judged, key=lambda e: e["position_m"] / max(e["before_m"], 1e-9))
     what = "runs away" if away else "is worse than the one it began from"
     if idle and not away:
-        what += f", and in place worse than keeping its speeds ({_far(e['kept_m'])})"
+        what += f", and in place worse than {KNOWING_NOTHING[idle]} ({_far(e[idle])})"
     before = f"{_far(e['before_m'])} and {num(e['before_deg'], 3)} deg"
     after = f"{_far(e['position_m'])} and {num(e['heading_deg'], 3)} deg"
     return (
@@ -56,12 +58,19 @@ def growth(judged: Sequence[Mapping[str, Any]]) -> float:
     return 0.5 * (_grew(judged, "position_m", "before_m") + _grew(judged, "heading_deg", "before_deg"))
 
 
-def knows_nothing(judged: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether it got farther off in place than it was, and than a ship that keeps its speeds and its rate of
-    turn (`kept_m`), over all horizons: a better heading does not make up for that."""
-    with_kept = [e for e in judged if np.isfinite(e.get("kept_m", np.nan))]
-    grew = [_grew(with_kept, "position_m", against) for against in ("before_m", "kept_m")]
-    return bool(with_kept) and min(grew) > GREW
+def knows_nothing(judged: Sequence[Mapping[str, Any]]) -> str:
+    """The nearer of the predictions KNOWING_NOTHING, if the model got farther off in place than it was, and
+    than that prediction, over all horizons: a better heading does not make up for that. "" if it did not."""
+    told = [key for key in KNOWING_NOTHING if _all(judged, key)]
+    if not told or _grew(judged, "position_m", "before_m") <= GREW:
+        return ""
+    grew = {key: _grew(judged, "position_m", key) for key in told}
+    nearer = max(told, key=lambda key: grew[key])
+    return nearer if grew[nearer] > GREW else ""
+
+
+def _all(entries: Sequence[Mapping[str, Any]], key: str) -> bool:
+    return all(np.isfinite(e.get(key, np.nan)) for e in entries)
 
 
 def _grew(entries: Sequence[Mapping[str, Any]], after: str, before: str) -> float:

@@ -115,13 +115,16 @@ def _learnable(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any], tupl
 
 def _of_actuators(ship: Ship) -> dict[tuple[str, float, object], list[str]]:
     """(name, value, whose) of every number of the actuators that voyages may tell, and the actuators that
-    share it: the shape of a make's curve is one, as long as the ship file has it alike for all of them."""
+    share it: the curve of a make and its gain are one, as long as the ship file has them alike for all of
+    them. Only where several share a gain has each a gain of its own beside it (a hierarchical prior, written
+    so that the numbers' own priors are independent; Gelman et al. 2013, Bayesian Data Analysis, ch. 5)."""
     out: dict[tuple[str, float, object], list[str]] = {}
     for a in ship.actuators:
         for name in a.estimated():
             whose = a.name if name in OWN else a.make
             out.setdefault((name, float(getattr(a, name)), whose), []).append(a.name)
-    return out
+    alone = {owners[0] for (name, *_), owners in out.items() if name == "gain" and len(owners) == 1}
+    return {key: owners for key, owners in out.items() if key[0] != "own_gain" or key[2] not in alone}
 
 
 def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
