@@ -96,7 +96,7 @@ def require(raw: Raw, controls: bool = True) -> None:
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
             f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
-            f"column, or say in a map which one it is (--map; {missing[0].split()[0]} = \"COLUMN\" under "
+            f'column, or say in a map which one it is (--map; {missing[0].split()[0]} = "COLUMN" under '
             f"[columns] leaves the others as they are).{steady}"
             + " What is judged without the controls is imported with "
             "--without-controls." * (set(missing) <= set(CONTROLS))

@@ -17,6 +17,7 @@ from twin.recording.checks.compass import compass
 from twin.recording.checks.copies import copies
 from twin.recording.checks.joint_checks import joint_answers
 from twin.recording.checks.motion import velocity_frame
+from twin.recording.checks.other_ship import other_ship
 from twin.recording.checks.propeller import propeller_rate
 from twin.recording.checks.proved_wrong import refuse
 from twin.recording.checks.rudder import rudder_sign, rudder_unit
@@ -55,11 +56,13 @@ CHECKS: tuple[Callable[[VoyageView], Check], ...] = (
     speed_log,
     wind,
     ship_size,
+    other_ship,
     duration,
 )
 
 
 LOSSES = ("whole_file", "time_gaps", "control_gaps")  # the checks that say what is not there
+WHOSE = ("ship_size", "other_ship")  # and those that ask whose voyage it is
 
 
 def of_voyages(voyages: Sequence[Voyage], ship: Ship | None = None) -> list[dict[str, Any]]:
@@ -77,6 +80,16 @@ def losses(entries: Sequence[dict[str, Any]]) -> list[str]:
     """What the voyages lack, a line each, out of such entries."""
     lost = [c for c in entries if c["check"] in LOSSES and not c["ok"]]
     return [f"lost  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['text']}" for c in lost]
+
+
+def whose(entries: Sequence[dict[str, Any]]) -> list[str]:
+    """That a voyage may be of another ship, a line each, out of such entries: what is read before any
+    number."""
+    doubts = [c for c in entries if c["check"] in WHOSE and not c["ok"]]
+    return [
+        f"{c.get('voyage', '')}{': ' * ('voyage' in c)}this may be a voyage of another ship: {c['text']}"
+        for c in doubts
+    ]
 
 
 def run_checks(voyage: Voyage, ship: Ship | None = None) -> list[Check]:
