@@ -47,6 +47,7 @@ class WhoseAnswer(NamedTuple):
     ratio: float
     fired: bool
     told: bool  # whether the voyage could tell at all
+    said: str
     proved: list[str]
 
 
@@ -83,7 +84,7 @@ def asked(
     whose = checks["other_ship"]
     proved = [c.name for c in checks.values() if c.unusable]
     ratio = length / float(ship.L_pp)
-    return WhoseAnswer(key, group, hidden, own, ratio, not whose.ok, whose.informative, proved)
+    return WhoseAnswer(key, group, hidden, own, ratio, not whose.ok, whose.informative, whose.text, proved)
 
 
 def of_sea(have: frozenset[str]) -> Iterator[WhoseAnswer]:
