@@ -96,6 +96,11 @@ BENCHES: dict[str, Bench] = {
         "mistakes of a recording: named, and never proved where there are none",
         "twin-bench import-mistakes --seeds 2",
     ),
+    "whose": Bench(
+        "bench.whose_voyage",
+        "is a voyage of another ship noticed, and one of its own left in peace?",
+        "twin-bench whose FOLDER --seeds 5",
+    ),
     "import-speed": Bench(
         "bench.import_speed",
         "how fast logs and tables are read, in how much memory",

@@ -75,7 +75,7 @@ def test_rounded_stamps_are_rebuilt_but_not_where_rows_are_missing(columns, writ
         ({"colums": {}}, "Did you mean 'columns'"),
         ({"columns": {"heading": 3}}, "Did you mean 'heading_true_north_deg'"),
         ({"columns": {"rudder_angle_deg": {"column": 3, "unit": "degree"}}}, "Did you mean 'deg'"),
-        ({"columns": {"rudder_angle_deg": {"unit": "deg"}}}, "needs column"),
+        ({"columns": {"rudder_angle_deg": {"colum": "rud"}}}, "Did you mean 'column'"),
         ({"columns": {"rudder_angle_deg": {"column": 3, "sign": 2}}}, "sign = 2"),
         ({"columns": {"rudder_angle_deg": {"column": 3, "frame": "earth"}}}, "frame is for"),
         ({"columns": {"surge_velocity_mps": {"column": 3, "frame": "earth"}}}, "same frame"),

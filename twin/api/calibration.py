@@ -128,6 +128,7 @@ def calibrate(
 
 def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progress) -> Calibration:
     """The same of voyages that are read already."""
+    checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
     fitted, held, words = split(every, kept)
     tell = Stages(tell, len(every) / len(fitted) if words == LAST else None)
     first = last = fitted_core(fitted, held, ship, tell)
@@ -139,6 +140,5 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     done = last.calibrated(tell, first)
     r = done.result
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
-    checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
     said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
     return Calibration(ship if why else done.ship, data=r | said)

@@ -8,6 +8,7 @@ from twin.api.result import Progress, Result, quietly
 from twin.api.voyages import several
 from twin.errors import UsageError
 from twin.physics.ship import Ship
+from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import as_map, corrected
@@ -118,6 +119,7 @@ def instruments(
             f"velocity_by={velocity_by!r}: give {' or '.join(map(repr, FRAMES))}, or leave it out."
         )
     asked = several(voyages)
+    of_voyages(asked)
     if velocity_by:
         asked = [v.with_meta(velocity_frame=FRAMES[velocity_by]) for v in asked]
     found = estimate(asked, float(ship.L_pp) if ship else None, quietly(progress))

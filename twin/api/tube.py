@@ -15,6 +15,7 @@ from twin.live.prediction.calibrated import SECTION, calibrated_of
 from twin.live.signals import config
 from twin.num import as_given, num
 from twin.physics.ship import Ship, save
+from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.reference.foretold import errors_of
@@ -99,13 +100,14 @@ def tube(
     it runs on board, and find within how many metres and degrees its predictions came true.
 
     `settings`: the file that `twin run` uses, so that network, rate and horizons are the same. 90 % takes
-    nine voyages; of fewer the best level they can show is promised. DataError when a voyage cannot be used or
-    is given twice. A few seconds for ten minutes of voyage.
+    nine voyages; of fewer the best level they can show is promised. DataError when a voyage cannot be used,
+    is proved wrong or is given twice. A few seconds for ten minutes of voyage.
     """
     tell, every = quietly(progress), several(voyages)
     if not every:
         raise DataError("no voyage was given. Give some on which nothing was wrong.")
     _once(every)
+    of_voyages(every, ship)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "ship.toml"
         save(ship, path)

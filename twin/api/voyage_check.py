@@ -11,8 +11,9 @@ from twin.api.result import PathLike, Result
 from twin.num import as_given
 from twin.physics.ship import Ship
 from twin.recording.checks import Check
+from twin.recording.checks.proved_wrong import refusal
 from twin.recording.formats.choose import sources_of
-from twin.recording.import_voyage import Imported, checked, import_voyage, refusal, summary
+from twin.recording.import_voyage import Imported, checked, import_voyage, summary
 from twin.recording.suggest_map import suggestion
 from twin.recording.voyage import Voyage
 
@@ -111,9 +112,11 @@ def import_file(
     ship: PathLike | None = None,
     sources: Sequence[str] = (),
     controls: bool = True,
+    accept: Sequence[str] = (),
 ) -> VoyageCheck:
     """A file or several read as one voyage, and checked: what `twin import` does."""
-    return _of(import_voyage([Path(p) for p in path], map, ship, sources, controls))  # type: ignore[arg-type]
+    paths = [Path(p) for p in path]
+    return _of(import_voyage(paths, map, ship, sources, controls, accept))  # type: ignore[arg-type]
 
 
 def _of(found: Imported) -> VoyageCheck:

@@ -2,28 +2,39 @@
 
 import glob
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from twin.api.result import PathLike
 from twin.errors import DataError
+from twin.recording.import_voyage import accepted
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage as read
 from twin.recording.voyage import Voyage
 
 
-def read_voyage(path: PathLike, map: PathLike | None = None, *, controls: bool = True) -> Voyage:
+def read_voyage(
+    path: PathLike, map: PathLike | None = None, *, controls: bool = True, accept: Sequence[str] = ()
+) -> Voyage:
     """One voyage: an MCAP log, or a text file by the channels' names or by a `map` of its own columns.
 
     DataError (a line that says what, where and what to do) when the file cannot be used; SettingsError when
     the map is not valid. The format of a map: docs/import.md. `controls` False: rudder and shaft need
     not be there, as for `instruments`.
+
+    Signs, units and frames are asked where the voyage is judged, as `twin import` asks them: `compare`,
+    `diagnose`, `calibrate`, `add`, `tube` and `instruments` refuse one of which a mistake is proved
+    (DataError; `check_voyage` says it at once). `accept`: names of checks that refuse it nowhere.
     """
-    return read(Path(path), read_map(Path(map)) if map is not None else None, controls=controls)
+    by = read_map(Path(map)) if map is not None else None
+    return accepted(read(Path(path), by, controls=controls), accept)
 
 
-def read_voyages(paths: PathLike | Iterable[PathLike], map: PathLike | None = None) -> list[Voyage]:
-    """Several voyages: paths, or one pattern such as "calm/*.mcap", in the order of their names.
+def read_voyages(
+    paths: PathLike | Iterable[PathLike], map: PathLike | None = None, *, accept: Sequence[str] = ()
+) -> list[Voyage]:
+    """Several voyages: paths, or one pattern such as "calm/*.mcap", in the order of their names; `accept` as
+    for one.
 
     DataError when a pattern matches nothing or a file cannot be used.
     """
@@ -32,7 +43,7 @@ def read_voyages(paths: PathLike | Iterable[PathLike], map: PathLike | None = No
         if not found:
             raise DataError(f"{os.fspath(paths)}: no file has such a name. Check the folder and the pattern.")
         paths = found
-    return [read_voyage(path, map) for path in paths]
+    return [read_voyage(path, map, accept=accept) for path in paths]
 
 
 def several(voyages: Voyage | Iterable[Voyage]) -> list[Voyage]:

@@ -9,7 +9,6 @@ from twin.commands import arguments
 from twin.commands.next_command import after_import, after_map
 from twin.commands.verb_output import files, lines_to, progress
 from twin.errors import DataError, UsageError
-from twin.recording.import_voyage import known_checks
 from twin.recording.write import write_voyage
 
 EPILOG = """
@@ -37,7 +36,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    known_checks(args.accept)
     whole.not_onto(args.output or "", args.file, "the file that is read")
     progress(f"reading {' '.join(args.file)}")
     if args.suggest_map:
@@ -47,14 +45,15 @@ def run(args: argparse.Namespace) -> int:
         return 0
     if not args.output:
         raise UsageError("-o VOYAGE.mcap is needed: where the checked voyage goes.")
-    found = import_file(args.file, args.map, args.ship, args.source, not args.without_controls)
-    refused = found.refused(args.accept)
+    controls = not args.without_controls
+    found = import_file(args.file, args.map, args.ship, args.source, controls, args.accept)
+    refused = found.refused()
     page = sys.stderr if refused else lines_to(args)
     print("\n".join(found.text(args.every_check)), file=page)
     if not refused:
         write_voyage(found.voyage, args.output)
     files(args, found.with_keys(output=None if refused else str(args.output)), page)
     if refused:
-        raise DataError(found.refusal(args.file[0], args.accept, args.map))
+        raise DataError(found.refusal(args.file[0], map=args.map))
     print(f"wrote {args.output}\nnext: {after_import(args.output, args.ship)}", file=page)
     return 0

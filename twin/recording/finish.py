@@ -74,6 +74,7 @@ def tells_why(note: str, missing: list[str]) -> bool:
     return (
         note.startswith(("not used", "left out"))
         or any(name in note for name in missing)
+        or "is not used" in note
         or "blanked" in note
         or "decimal" in note
     )
@@ -95,7 +96,8 @@ def require(raw: Raw, controls: bool = True) -> None:
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
             f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
-            f"column, or say in a map which one it is (--map).{steady}"
+            f'column, or say in a map which one it is (--map; {missing[0].split()[0]} = "COLUMN" under '
+            f"[columns] leaves the others as they are).{steady}"
             + " What is judged without the controls is imported with "
             "--without-controls." * (set(missing) <= set(CONTROLS))
         )

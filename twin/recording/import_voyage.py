@@ -8,6 +8,7 @@ from twin.errors import SettingsError, did_you_mean
 from twin.num import as_given
 from twin.physics.ship import Ship, load
 from twin.recording.checks import CHECKS, Check, run_checks
+from twin.recording.checks.proved_wrong import proved_wrong
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
@@ -24,7 +25,7 @@ class Imported(NamedTuple):
 
     def refused(self, accept: Collection[str] = ()) -> list[Check]:
         """The checks that prove a mistake and are not accepted."""
-        return [c for c in self.checks if c.unusable and c.name not in accept]
+        return proved_wrong(self.voyage, self.checks, accept)
 
     def as_json(self) -> dict[str, Any]:
         """What `twin import --json` writes."""
@@ -54,12 +55,21 @@ def import_voyage(
     ship_path: str | Path | None = None,
     sources: Sequence[str] = (),
     controls: bool = True,
+    accept: Sequence[str] = (),
 ) -> Imported:
     """Reads a file or several, through a map if they have their own columns, and checks them, with a ship if
-    one is given."""
+    one is given. `accept`: checks that refuse it nowhere."""
     ship = load(ship_path) if ship_path else None
     voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None, sources_of(sources), controls)
-    return checked(voyage, ship)
+    return checked(accepted(voyage, accept), ship)
+
+
+def accepted(voyage: Voyage, accept: Sequence[str]) -> Voyage:
+    """The voyage with the names of checks that refuse it nowhere, beside those it has. SettingsError: no
+    check has such a name."""
+    known_checks(accept)
+    every = {*accept, *voyage.meta.get("accepted", ())}
+    return voyage.with_meta(accepted=sorted(every)) if every else voyage
 
 
 def checked(voyage: Voyage, ship: Ship | None) -> Imported:
@@ -114,16 +124,3 @@ def quietly(quiet: Sequence[Check]) -> str:
 def mark(check: Check) -> str:
     """The word in front of a check's sentence."""
     return "WRONG" if check.unusable else "look" if not check.ok else "ok" if check.informative else "?"
-
-
-def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) -> str:
-    """One line: what is wrong, and the two ways out."""
-    mend = (
-        f"Correct {map_path}"
-        if map_path
-        else f"Have a map proposed (twin import {path} --suggest-map -o map.toml), write that into a map "
-        "where the proposed one lacks it, and give it with --map"
-    )
-    accept = " ".join(f"--accept {c.name}" for c in refused)
-    said = " ".join(f"{c.name}: {c.text}" for c in refused)
-    return f"{path}: not imported. {said} {mend}, or import it as it is with {accept}."

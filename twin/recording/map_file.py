@@ -106,9 +106,10 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
 
 
 def column(name: str, entry: Any, where: str) -> Column:
-    """One entry: `"NAME"`, `3`, or a table. SettingsError: its keys do not fit each other or the channel."""
+    """One entry: `"NAME"`, `3`, or a table; a table without `column` is of the column with the channel's
+    own name. SettingsError: its keys do not fit each other or the channel."""
     channel_name(name, where)
-    table = entry if isinstance(entry, Mapping) else {"column": entry}
+    table = {"column": name} | dict(entry) if isinstance(entry, Mapping) else {"column": entry}
     out: Column = build(Column, table, f"{where}: [columns] {name}")
     one_of(out.frame, FRAMES, f"{where}: {name}: frame")
     one_of(out.direction, ("from", "to"), f"{where}: {name}: direction")
@@ -178,12 +179,9 @@ def time_column(entry: Any, where: str) -> TimeColumn:
 
 
 def build(kind: Any, table: Any, where: str) -> Any:
-    """A dataclass from a TOML table, refusing unknown and missing keys by name. SettingsError: a key is
-    missing."""
+    """A dataclass from a TOML table, refusing unknown keys by name."""
     names = [f.name for f in fields(kind)]
     table = known(table, names, where)
-    if "column" in names and kind is Column and "column" not in table:
-        raise SettingsError(f"{where}: needs column = NAME or NUMBER (from 1).")
     for key, value in table.items():
         right_kind(value, KINDS[key], f"{where} {key}")
     return kind(**{k: as_tuple(k, v, where) if isinstance(v, list) else v for k, v in table.items()})

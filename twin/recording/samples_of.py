@@ -18,7 +18,7 @@ from twin.recording.formats.binary_tables import Packed
 from twin.recording.formats.choose import Sources, chosen
 from twin.recording.formats.series_table import as_columns
 from twin.recording.formats.zipped import is_zip, unpacked
-from twin.recording.headers import column_names, own_names
+from twin.recording.headers import column_names, names_by, overlaid, own_names
 from twin.recording.long_table import widened
 from twin.recording.map_file import parse_map
 from twin.recording.mapping import PLACES, Column, Map, TimeColumn
@@ -99,8 +99,14 @@ def words(path: Path) -> dict[str, Any]:
 
 
 def from_text(path: Path, by: Map | None, packed: Packed | None = None) -> Raw:
-    """The samples of a table, text or packed, through a map."""
-    by, unused = (by, ()) if by else own_names(path, packed.names if packed else column_names(path))
+    """The samples of a table, text or packed, by the documented names of its columns, and through a map
+    where one is given."""
+    if by is None:
+        by, unused = own_names(path, packed.names if packed else column_names(path))
+    elif not by.layout.long:
+        by, unused = overlaid(by, packed.names if packed else names_by(path, by.layout)), ()
+    else:
+        unused = ()
     table = table_of(path, by, packed)
     clock = read_clock(path, table, stamps_of(by), by.time or TimeColumn())
     if by.layout.long:

@@ -16,7 +16,7 @@ from twin.recording.formats import recognised
 from twin.recording.formats.binary_tables import Packed
 from twin.recording.formats.series_table import as_columns
 from twin.recording.formats.signals import Signals
-from twin.recording.headers import column_names, own_names
+from twin.recording.headers import column_names, overlaid, own_names
 from twin.recording.mapping import Column, Map, TimeColumn
 from twin.recording.raw import Raw, opened_table, read_clock, stamps_of, table_of, through
 from twin.recording.table import Table
@@ -87,13 +87,24 @@ def own_maps(parts: Sequence[Part], notes: list[str]) -> list[tuple[Part, Map]]:
 
 
 def placed_in(parts: Sequence[Part], by: Map, where: Path) -> list[tuple[Part, Map]]:
-    """Each file with the part of the map that stands in it."""
+    """Each file with the part of the map that stands in it, laid over what its columns' own names say: of a
+    channel that several files name, the first one's."""
     held: dict[int, dict[str, Column]] = {}
     for name, c in by.columns.items():
         place = file_of(parts, name, c, where)
         if place is not None:
             held.setdefault(place, {})[name] = c
-    return [(parts[i], replace(by, columns=columns, constant={})) for i, columns in held.items()]
+    times, taken = dict.fromkeys(held, by.time), {*by.columns}
+    for i, part in enumerate(parts):
+        own = overlaid(by, part.names)
+        if own.time and {*stamps_of(own)} <= {*part.names}:
+            left = {n: c for n, c in own.columns.items() if n not in taken}
+            times[i], taken = own.time, taken | {*left}
+            held |= {i: held.get(i, {}) | left} if left else {}
+    return [
+        (parts[i], replace(by, columns=columns, constant={}, time=times.get(i, by.time)))
+        for i, columns in held.items()
+    ]
 
 
 def file_of(parts: Sequence[Part], name: str, c: Column, where: Path) -> int | None:

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from twin.recording.checks import whose
+
 
 def title(kind: str, result: dict[str, Any]) -> str:
     """What the page is called."""
@@ -12,5 +14,6 @@ def title(kind: str, result: dict[str, Any]) -> str:
 
 
 def sentence(kind: str, result: dict[str, Any]) -> str:
-    """What the verb says of its result."""
-    return str(result.get("sentence" if kind == "diagnose" else "verdict", ""))
+    """What the verb says of its result; before it, that a voyage may be of another ship."""
+    said = str(result.get("sentence" if kind == "diagnose" else "verdict", ""))
+    return " ".join([*whose(result.get("data_checks", ())), said])

@@ -12,7 +12,8 @@ from twin.errors import DataError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
-from twin.recording.import_voyage import import_voyage, refusal
+from twin.recording.checks.proved_wrong import refusal
+from twin.recording.import_voyage import import_voyage
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
 from twin.recording.ship_file_writer import save
@@ -42,8 +43,9 @@ def look(asked: Request, job: Path, tell: Tell) -> None:
 def import_(asked: Request, job: Path, tell: Tell) -> None:
     tell(f"reading {asked['file']}")
     not_there(asked["output"])
-    found = import_voyage(asked["file"], asked.get("map"), asked.get("ship"))
-    refused = found.refused(asked.get("accept", ()))
+    accept = asked.get("accept", ())
+    found = import_voyage(asked["file"], asked.get("map"), asked.get("ship"), accept=accept)
+    refused = found.refused()
     write_result(job, "result.json", found.as_json() | {"output": None if refused else asked["output"]})
     if refused:
         raise DataError(refusal(asked["file"], refused, asked.get("map")))

@@ -22,6 +22,7 @@ OF_MOTION = (
     "actuators",
     "speed_log",
     "wind",
+    "other_ship",
 )
 # which relations a check's proof rests on beside its own: where one of them is broken it proves nothing
 WITNESSES: dict[str, tuple[str, ...]] = {
@@ -45,8 +46,17 @@ def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
         again = {check.__name__: check(without) for check in checks if check.__name__ in OF_MOTION}
         answers |= {name: a for name, a in again.items() if name not in named}
     answers |= named
+    answers["propeller_rate"] = of_this_ship(answers["propeller_rate"], answers["other_ship"], view)
     broken = {name for name, off in offs(coarse(without)).items() if off is not None and off > BROKEN}
     return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
+
+
+def of_this_ship(answer: Check, whose: Check, view: VoyageView) -> Check:
+    """The answer of `propeller_rate`: by a ship's propeller it proves a unit only where the rest of the
+    voyage is seen to be that ship's."""
+    if not answer.unusable or view.ship is None or (whose.ok and whose.informative):
+        return answer
+    return doubtful(answer.name, f"{answer.text} Not proved: {whose.name}: {whose.text}")
 
 
 def named_mistakes(view: VoyageView, answers: dict[str, Check]) -> tuple[dict[str, Check], VoyageView]:

@@ -74,21 +74,24 @@ def held_turns(view: VoyageView) -> tuple[int, int]:
     return int(np.sum(turned > HELD_TURN_DEG)), int(np.sum(turned < -HELD_TURN_DEG))
 
 
-def best_gain(view: VoyageView) -> tuple[float, float]:
-    """`rudder_gain` over the window length at which the rudder explains most."""
-    rudder, r = view.si("rudder_angle_deg"), view.si("yaw_rate_degps")
+def best_gain(view: VoyageView, push: np.ndarray | None = None) -> tuple[float, float]:
+    """`rudder_gain` over the window length at which the rudder explains most. `push` (N,): how it turns the
+    ship, U^2 delta where it is not given."""
+    r = view.si("yaw_rate_degps")
     r = np.where(view.velocity.real > 0.2 * view.speed, r, np.nan)  # astern the rudder works the other way
+    if push is None:
+        push = view.si("rudder_angle_deg") * np.abs(view.velocity) ** 2
     lengths = view.step_s * np.array([2, 5, 10, 20, 40, 80, 160])
     usable = lengths[lengths < view.voyage.duration_s / 10.0]
-    return max((rudder_gain(view, rudder, r, w) for w in usable), default=(0.0, 0.0))
+    return max((rudder_gain(view, push, r, w) for w in usable), default=(0.0, 0.0))
 
 
-def rudder_gain(view: VoyageView, rudder: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
-    """(share of the changes of r that the rudder explains beside r itself, b). `rudder` (N,) [rad] and `r`
-    (N,) [rad/s] on the view's even grid."""
+def rudder_gain(view: VoyageView, push: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
+    """(share of the changes of r that the rudder explains beside r itself, b). `push` (N,), how it turns the
+    ship, and `r` (N,) [rad/s] on the view's even grid."""
     first, last = view.windows(seconds)
     change, speed = r[last] - r[first], np.abs(view.velocity)
-    held = view.summed(rudder * speed**2, first, last)
+    held = view.summed(push, first, last)
     damping = [
         view.summed(speed * r, first, last),
         view.summed(np.abs(r) * r, first, last),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from twin.num import as_given, num
-from twin.recording.checks import losses
+from twin.recording.checks import losses, whose
 from twin.study.calibration.calibration_record import PARTS
 from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
@@ -11,8 +11,9 @@ from twin.study.track.jumps import jumps_in_words
 
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
-    """Lines for the terminal: the error first."""
-    lines = [f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"]
+    """Lines for the terminal: the error first; before it, that a voyage may be of another ship."""
+    error = f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"
+    lines = [*whose(result["data_checks"]), error]
     for e in result["held_out"]:
         if e["position_m"] is not None:
             lines.append(

@@ -56,7 +56,9 @@ def diagnose(
     references: Sequence[Voyage] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> Diagnosed:
-    """Judge all candidates jointly on these voyages."""
+    """Judge all candidates jointly on these voyages. DataError: a sign, unit or frame of one is proved
+    wrong."""
+    checks = of_voyages([*voyages, *references], ship)
     case = assemble(voyages, ship, references, progress)
     told = with_further(
         answer(case, voyages, ship, references, progress), voyages, ship, references, progress
@@ -130,7 +132,7 @@ def diagnose(
         "waves": waves_on(case.tracks),
         "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],
-        "data_checks": of_voyages([*voyages, *references], ship),
+        "data_checks": checks,
         "facts": facts.as_json(),
     }
     result["sentence"] = decision.sentence(result)

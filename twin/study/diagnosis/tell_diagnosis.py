@@ -3,6 +3,7 @@
 from typing import Any
 
 from twin.num import as_given, num, percent
+from twin.recording.checks import whose
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import waves_in_words
@@ -13,7 +14,7 @@ PUSHED = 3  # moments that are told
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
-    lines = [result["sentence"], ""]
+    lines = [*whose(result["data_checks"]), result["sentence"], ""]
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
     for c in result["resembles"]:
         lines += _candidate(c)

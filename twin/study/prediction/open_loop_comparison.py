@@ -38,8 +38,11 @@ def compare(
     sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] = HORIZONS_S
 ) -> ComparedVoyages:
     """Predict every voyage open loop and judge the errors together. DataError: no voyage is long enough
-    for a horizon."""
+    for a horizon, or a sign, unit or frame of one is proved wrong."""
+    from twin.recording.checks import of_voyages
+
     ship, noise_model = model.ship, noise_model_of(model.ship)
+    checks = of_voyages([s.voyage for s in sailed], ship)
     models = [fed(model, s.track)[0] for s in sailed]
     windows = [
         predict(s.track, m, horizons_s, noise_model=noise_model, seed=i)
@@ -56,6 +59,7 @@ def compare(
     where = locate.regimes(windows, _locating(rows), ship, noise_model is not None)
     result = _result(ship, model, sailed, rows, judged)
     result |= {
+        "data_checks": checks,
         "channels": score.channels(windows, noise_model is not None),
         "where": [{k: v for k, v in w.items() if k != "mask"} for w in where],
         "worst_windows": locate.worst(windows, longest),
@@ -71,7 +75,6 @@ def _result(
     ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy
 ) -> dict[str, Any]:
     from twin.live.learning.residual import ship_hash
-    from twin.recording.checks import of_voyages
 
     return {
         "schema_version": SCHEMA_VERSION,
@@ -85,7 +88,6 @@ def _result(
         "horizons": rows,
         "unexplained_force": judged.unexplained(),
         "learned_share": judged.learned_share(),
-        "data_checks": of_voyages([s.voyage for s in sailed], ship),
     }
 
 

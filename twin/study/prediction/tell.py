@@ -4,6 +4,7 @@ import textwrap
 from typing import Any
 
 from twin.num import as_given, num
+from twin.recording.checks import whose
 from twin.study.estimation.start import waves_in_words
 from twin.study.track.jumps import jumps_in_words
 
@@ -11,8 +12,9 @@ BAR = 24
 
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
-    """The whole answer, a line each."""
+    """The whole answer, a line each; before it, that a voyage may be of another ship."""
     return [
+        *whose(result["data_checks"]),
         *textwrap.wrap(result["verdict"], 100),
         "",
         f"{result['ship']}, {len(result['voyages'])} voyage{'s' * (len(result['voyages']) > 1)}; model: core"

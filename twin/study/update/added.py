@@ -10,6 +10,7 @@ from twin.num import as_given, num
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.recording.checks import whose
 from twin.recording.jsonable import short
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.structure import noise_model_of
@@ -173,6 +174,7 @@ def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
 def terminal_lines(result: dict[str, Any]) -> list[str]:
     """The answer on a terminal."""
     out = [
+        *whose(result["data_checks"]),
         result["verdict"],
         "",
         f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'expected [m]':>14}"
