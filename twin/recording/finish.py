@@ -92,10 +92,13 @@ def require(raw: Raw, controls: bool = True) -> None:
             n[:200] for n in raw.notes if tells_why(n, missing)
         ][:4]
         steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
+        needs = ", ".join(missing)
+        for control in [name for name in missing if name in CONTROLS][-1:]:
+            needs = needs.replace(control, f"{control} (or the channels of actuators, as port.command)")
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
-            f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
-            f"column, or say in a map which one it is (--map).{steady}"
-            + " What is judged without the controls is imported with "
+            f"{raw.path}: {kind}needs {needs}. {'; '.join(said)}{'. ' if said else ''}Add "
+            "the column, or say in a map which one it is (twin import --map; --suggest-map writes one)."
+            f"{steady}" + " What is judged without the controls is imported with "
             "--without-controls." * (set(missing) <= set(CONTROLS))
         )

@@ -68,10 +68,8 @@ def actuators(view: VoyageView) -> Check:
 def _answer(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedWiring]) -> Check:
     rivals = [t for t in tried if t.wiring.mistakes <= best.wiring.mistakes and not _alike(t, best)]
     rival = max(rivals, key=lambda t: t.total)
-    saw = (
-        f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}; "
-        f"the next best, {rival.wiring.text}, {_shares(rival)}"
-    )
+    second = f"; the next best, {rival.wiring.text}, {_shares(rival)}" * (rival is not as_is)
+    saw = f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}{second}"
     sides = " (or exchange their x_m and y_m in the ship file)" * ("exchange" in best.wiring.fix)
     fix = f"In the map: {best.wiring.fix}{sides}"
     if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF):
