@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from bench.small_boats import KINDS, MISTAKES, healthy, sailed, ship_of
+from twin.num import num
 from twin.recording.checks import run_checks
 from twin.recording.checks.actuator_response import actuators
 from twin.recording.checks.standstill import actuator_zero
@@ -53,6 +54,19 @@ def test_a_stop_at_another_pulse_is_read_from_where_the_boat_lies_still():
     assert not found.ok and "zero = 0.0400 for port, 0.0400 for starboard" in found.text
     mended = ship.with_derivatives(**{"port.zero": 0.04, "starboard.zero": 0.04})
     assert actuator_zero(VoyageView(moved, mended)).ok
+
+
+def test_a_rest_too_short_to_tell_is_told_with_how_long_it_must_be():
+    """Test: a boat of thrusters, without and with the seconds in which it lies still. Expected: they tell its
+    stop; without them nothing does, and how long and how still is said."""
+    right, ship = sailed("thrusters", SEED), ship_of("thrusters")
+    assert actuator_zero(VoyageView(right, ship)).informative
+    later = right.time_s > 12.0
+    cut = right.with_rows(right.time_s[later], {n: x[later] for n, x in right.columns.items()})
+    found = actuator_zero(VoyageView(cut, ship))
+    assert found.ok and not found.informative
+    least = max(8.0, 10.0 * ship.L_pp / ship.U_0) / 0.75
+    assert f"for {least:.0f} s" in found.text and f"below {num(0.05 * ship.U_0, 2)} m/s" in found.text
 
 
 def test_without_a_ship_file_with_actuators_it_says_what_it_needs():
