@@ -6,10 +6,12 @@ import pytest
 
 from bench.small_boats import KINDS, MISTAKES, healthy, sailed, ship_of
 from twin.num import num
+from twin.physics.ship import load
 from twin.recording.checks import run_checks
 from twin.recording.checks.actuator_response import actuators
 from twin.recording.checks.standstill import actuator_zero
 from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.voyage import Voyage
 
 SEED = 4242
 
@@ -72,3 +74,20 @@ def test_a_rest_too_short_to_tell_is_told_with_how_long_it_must_be():
 def test_without_a_ship_file_with_actuators_it_says_what_it_needs():
     found = answer(sailed("thrusters", SEED), None)
     assert found.ok and not found.informative and "--ship" in found.text
+
+
+def test_a_voyage_recorded_of_other_controls_than_the_ship_file_has_is_told(sail):
+    """Test: a boat's voyage without one thruster, a ship's voyage of rudder and shaft with the boat's file, and
+    the boat's with a ship's. Expected: a look that names what is missing and what was recorded; of a voyage
+    without any control nothing."""
+    right, boat = sailed("thrusters", SEED), ship_of("thrusters")
+    one = replace(right, columns={n: x for n, x in right.columns.items() if n != "port.pwm_us"})
+    found = answer(one, boat)
+    assert not found.ok and not found.unusable
+    assert "not recorded: port.pwm_us;" in found.text and "Recorded: starboard.pwm_us" in found.text
+    ship_voyage = Voyage("s", (columns := sail(200.0)).pop("time_s"), columns)
+    found = answer(ship_voyage, boat)
+    assert not found.ok and "Recorded: rudder_angle_deg, propeller_rate_rpm" in found.text
+    assert not answer(right, load("kvlcc2")).ok and answer(ship_voyage, load("kvlcc2")).ok
+    none = replace(one, columns={n: x for n, x in one.columns.items() if n != "starboard.pwm_us"})
+    assert answer(none, boat).ok and not answer(none, boat).informative

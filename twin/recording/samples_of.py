@@ -162,6 +162,7 @@ def of_own_map(signals: Signals, choice: SourceChoice, by: Map) -> list[str]:
     lost = {c for c, name in names.items() if name not in kept}
     lost |= {signals.series[names[c]].quantity for c in lost}
     lost |= {MAGNETIC} if HEADING in lost else set()
+    lost |= {s.quantity for s in signals.series.values() if s.name in kept - set(names.values())}
     return [note for note in choice.notes if note.partition(":")[0] not in lost]
 
 
