@@ -202,3 +202,13 @@ def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(
     refused(text(tmp_path, data[:300], "cut.mcap"))
     cut = read_voyage(text(tmp_path, data[:-20], "tail.mcap"))
     assert len(cut) == 600 and any("cut off" in n and "is there" in n for n in cut.meta["lost"])
+
+
+@pytest.mark.parametrize("stamp", ["2026-05-17", "2026-05-17T08:30:00Z"])
+def test_a_clock_that_stands_still_is_refused(columns, write_csv, refused, stamp):
+    """Test: a date without its time of day as the clock. Expected: one line that says so, no voyage."""
+    refused(
+        write_csv({"time_utc": [stamp] * 600} | {n: x for n, x in columns.items() if n != "time_s"}),
+        "all 600 rows have the same time",
+        "date without its time of day",
+    )

@@ -15,6 +15,7 @@ from twin.recording.timebase import (
     rebuilt,
     refuse_backwards,
     refuse_leaps,
+    refuse_standing,
 )
 
 FEWEST_ROWS = 10
@@ -39,6 +40,7 @@ def finished(raw: Raw, controls: bool = True) -> Finished:
     if raw.rebuild is not False:
         raw.time_s, how = rebuilt(raw.path, raw.time_s, raw.rebuild)
         raw.notes.append(how)
+    refuse_standing(raw.path, raw.time_s)
     for name, values in raw.columns.items():
         raw.columns[name], blanked = plausible(name, values, raw.lines)
         raw.notes += blanked
