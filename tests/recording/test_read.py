@@ -212,3 +212,10 @@ def test_a_clock_that_stands_still_is_refused(columns, write_csv, refused, stamp
         "all 600 rows have the same time",
         "date without its time of day",
     )
+
+
+def test_a_heading_that_is_no_number_is_blanked_without_a_word_of_numpy(columns, write_csv, recwarn):
+    columns["heading_true_north_deg"][7] = np.inf
+    v = read_voyage(write_csv(columns))
+    assert np.isnan(v["heading_true_north_deg"][7]) and np.isfinite(v["heading_true_north_deg"][8])
+    assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]
