@@ -9,7 +9,11 @@ from twin.num import num
 from twin.physics.ship import load
 from twin.recording.checks import run_checks
 from twin.recording.checks.actuator_response import actuators
+from twin.recording.checks.check_result import doubtful, wrong
+from twin.recording.checks.joint_checks import joint_answers
 from twin.recording.checks.standstill import actuator_zero
+from twin.recording.checks.steps import heading_steps
+from twin.recording.checks.undo import HEADING
 from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.voyage import Voyage
 
@@ -91,3 +95,21 @@ def test_a_voyage_recorded_of_other_controls_than_the_ship_file_has_is_told(sail
     assert not answer(right, load("kvlcc2")).ok and answer(ship_voyage, load("kvlcc2")).ok
     none = replace(one, columns={n: x for n, x in one.columns.items() if n != "starboard.pwm_us"})
     assert answer(none, boat).ok and not answer(none, boat).informative
+
+
+def test_what_hangs_proves_nothing_of_the_wiring():
+    """Test: a check that proves a wiring, beside one that says which channel stands still. Expected: a heading
+    that stands still makes it a doubt that says so; a position does not."""
+    view = VoyageView(sailed("thrusters", SEED), ship_of("thrusters"))
+
+    def told(channel):
+        def frozen(_):
+            return doubtful("frozen", f"{channel} stays 40 from 0 to 200 s.")
+
+        def actuators(_):
+            return wrong("actuators", "sides exchanged.")
+
+        return joint_answers(view, (heading_steps, frozen, actuators))[-1]
+
+    assert not told(HEADING).unusable and "it rests on a channel that stands still" in told(HEADING).text
+    assert told("north_m").unusable
