@@ -5,10 +5,17 @@ from dataclasses import replace
 import pytest
 
 from bench.small_boats import KINDS, MISTAKES, healthy, sailed, ship_of
+from twin.num import num
+from twin.physics.ship import load
 from twin.recording.checks import run_checks
 from twin.recording.checks.actuator_response import actuators
+from twin.recording.checks.check_result import doubtful, wrong
+from twin.recording.checks.joint_checks import joint_answers
 from twin.recording.checks.standstill import actuator_zero
+from twin.recording.checks.steps import heading_steps
+from twin.recording.checks.undo import HEADING
 from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.voyage import Voyage
 
 SEED = 4242
 
@@ -55,6 +62,54 @@ def test_a_stop_at_another_pulse_is_read_from_where_the_boat_lies_still():
     assert actuator_zero(VoyageView(moved, mended)).ok
 
 
+def test_a_rest_too_short_to_tell_is_told_with_how_long_it_must_be():
+    """Test: a boat of thrusters, without and with the seconds in which it lies still. Expected: they tell its
+    stop; without them nothing does, and how long and how still is said."""
+    right, ship = sailed("thrusters", SEED), ship_of("thrusters")
+    assert actuator_zero(VoyageView(right, ship)).informative
+    later = right.time_s > 12.0
+    cut = right.with_rows(right.time_s[later], {n: x[later] for n, x in right.columns.items()})
+    found = actuator_zero(VoyageView(cut, ship))
+    assert found.ok and not found.informative
+    least = max(8.0, 10.0 * ship.L_pp / ship.U_0) / 0.75
+    assert f"for {least:.0f} s" in found.text and f"below {num(0.05 * ship.U_0, 2)} m/s" in found.text
+
+
 def test_without_a_ship_file_with_actuators_it_says_what_it_needs():
     found = answer(sailed("thrusters", SEED), None)
     assert found.ok and not found.informative and "--ship" in found.text
+
+
+def test_a_voyage_recorded_of_other_controls_than_the_ship_file_has_is_told(sail):
+    """Test: a boat's voyage without one thruster, a ship's voyage of rudder and shaft with the boat's file, and
+    the boat's with a ship's. Expected: a look that names what is missing and what was recorded; of a voyage
+    without any control nothing."""
+    right, boat = sailed("thrusters", SEED), ship_of("thrusters")
+    one = replace(right, columns={n: x for n, x in right.columns.items() if n != "port.pwm_us"})
+    found = answer(one, boat)
+    assert not found.ok and not found.unusable
+    assert "not recorded: port.pwm_us;" in found.text and "Recorded: starboard.pwm_us" in found.text
+    ship_voyage = Voyage("s", (columns := sail(200.0)).pop("time_s"), columns)
+    found = answer(ship_voyage, boat)
+    assert not found.ok and "Recorded: rudder_angle_deg, propeller_rate_rpm" in found.text
+    assert not answer(right, load("kvlcc2")).ok and answer(ship_voyage, load("kvlcc2")).ok
+    none = replace(one, columns={n: x for n, x in one.columns.items() if n != "starboard.pwm_us"})
+    assert answer(none, boat).ok and not answer(none, boat).informative
+
+
+def test_what_hangs_proves_nothing_of_the_wiring():
+    """Test: a check that proves a wiring, beside one that says which channel stands still. Expected: a heading
+    that stands still makes it a doubt that says so; a position does not."""
+    view = VoyageView(sailed("thrusters", SEED), ship_of("thrusters"))
+
+    def told(channel):
+        def frozen(_):
+            return doubtful("frozen", f"{channel} stays 40 from 0 to 200 s.")
+
+        def actuators(_):
+            return wrong("actuators", "sides exchanged.")
+
+        return joint_answers(view, (heading_steps, frozen, actuators))[-1]
+
+    assert not told(HEADING).unusable and "it rests on a channel that stands still" in told(HEADING).text
+    assert told("north_m").unusable

@@ -74,6 +74,8 @@ def test_rounded_stamps_are_rebuilt_but_not_where_rows_are_missing(columns, writ
     [
         ({"colums": {}}, "Did you mean 'columns'"),
         ({"columns": {"heading": 3}}, "Did you mean 'heading_true_north_deg'"),
+        ({"columns": {"port.rate_rmp": 3}}, "Did you mean 'port.rate_rpm'"),
+        ({"columns": {"Port Aft.pwm": 3}}, "Did you mean 'port_aft.pwm_us'"),
         ({"columns": {"rudder_angle_deg": {"column": 3, "unit": "degree"}}}, "Did you mean 'deg'"),
         ({"columns": {"rudder_angle_deg": {"colum": "rud"}}}, "Did you mean 'column'"),
         ({"columns": {"rudder_angle_deg": {"column": 3, "sign": 2}}}, "sign = 2"),

@@ -7,6 +7,7 @@ from tests.recording.conftest import nmea_lines, sentence
 from twin.errors import DataError, SettingsError
 from twin.recording.formats import recognised
 from twin.recording.formats.nmea0183 import checksum, read
+from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 
 
@@ -99,6 +100,10 @@ def test_two_talkers_are_kept_apart_and_one_can_be_chosen(tmp_path, sailed):
         second["heading_true_north_deg"] - first["heading_true_north_deg"], 3.0, atol=0.02
     )
     assert any("HEHDT.heading is used, not GPHDT.heading" in note for note in first.meta["notes"])
+    by = parse_map({"columns": {"heading_true_north_deg": "GPHDT.heading"}}, "of a person")
+    third = read_voyage(path, by)
+    np.testing.assert_array_equal(third["heading_true_north_deg"], second["heading_true_north_deg"])
+    assert not any("HEHDT.heading is used" in note for note in third.meta["notes"])
     with pytest.raises(SettingsError, match="its sources are GP, HE"):
         read_voyage(path, sources={"heading_true_north_deg": "XX"})
 

@@ -202,3 +202,20 @@ def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(
     refused(text(tmp_path, data[:300], "cut.mcap"))
     cut = read_voyage(text(tmp_path, data[:-20], "tail.mcap"))
     assert len(cut) == 600 and any("cut off" in n and "is there" in n for n in cut.meta["lost"])
+
+
+@pytest.mark.parametrize("stamp", ["2026-05-17", "2026-05-17T08:30:00Z"])
+def test_a_clock_that_stands_still_is_refused(columns, write_csv, refused, stamp):
+    """Test: a date without its time of day as the clock. Expected: one line that says so, no voyage."""
+    refused(
+        write_csv({"time_utc": [stamp] * 600} | {n: x for n, x in columns.items() if n != "time_s"}),
+        "all 600 rows have the same time",
+        "date without its time of day",
+    )
+
+
+def test_a_heading_that_is_no_number_is_blanked_without_a_word_of_numpy(columns, write_csv, recwarn):
+    columns["heading_true_north_deg"][7] = np.inf
+    v = read_voyage(write_csv(columns))
+    assert np.isnan(v["heading_true_north_deg"][7]) and np.isfinite(v["heading_true_north_deg"][8])
+    assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]

@@ -1,12 +1,16 @@
 """ROS bags and logs of autopilots: frames and units of each brought to north, east, down and degrees."""
 
+import tomllib
 from struct import pack
 
 import numpy as np
 import pytest
 
+from twin.errors import DataError
 from twin.recording.formats import recognised
+from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
+from twin.recording.suggest_map import suggestion
 
 rosbags = pytest.importorskip("rosbags", reason="needs the extra io")
 START_NS = 1795608000_000000000
@@ -53,6 +57,48 @@ def write_bag(path, m, frame="odom", storage=None):
             )
             writer.write(odometry, at, store.serialize_cdr(message, "nav_msgs/msg/Odometry"))
     return path
+
+
+def write_boat(path, m):
+    """A ROS 2 bag of a boat with two thrusters: odometry, and orders without a unit or a word of their own."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    write_bag(path / "way", m, storage="mcap")
+    with Writer(path / "boat", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        copy_of(path / "way", writer, store)
+        for side, push in (("port", 0.6), ("starboard", 0.4)):
+            topic = writer.add_connection(f"/thrusters/{side}/cmd", "std_msgs/msg/Float32", typestore=store)
+            for t in m["t"]:
+                order = store.types["std_msgs/msg/Float32"](push)
+                writer.write(topic, START_NS + int(t * 1e9), store.serialize_cdr(order, order.__msgtype__))
+    return path / "boat"
+
+
+def copy_of(path, writer, store):
+    from rosbags.rosbag2 import Reader
+
+    with Reader(path) as reader:
+        topic = writer.add_connection("/odom", "nav_msgs/msg/Odometry", typestore=store)
+        for _, stamp, raw in reader.messages():
+            writer.write(topic, stamp, raw)
+
+
+def test_what_a_map_takes_of_a_log_is_not_called_unused(tmp_path, sailed):
+    """Test: thrusters that only a map can name, in a bag. Expected: without a map they are named as not used;
+    the proposed map takes them and says of nothing that it is not used, nor does the voyage read by it; a map
+    that takes one of them names the other."""
+    path = write_boat(tmp_path, sailed)
+    with pytest.raises(DataError, match=r"or the channels of actuators.*not used: /thrusters/port/cmd"):
+        read_voyage(path)
+    text = suggestion([path], {})
+    by = parse_map(tomllib.loads(text), "proposed")
+    assert "port.command" in by.columns and "not used" not in text
+    assert not [n for n in read_voyage(path, by).meta["notes"] if "not used" in n]
+    one = parse_map({"columns": {"port.command": "/thrusters/port/cmd.data"}}, "one")
+    said = [n for n in read_voyage(path, one).meta["notes"] if "not used" in n]
+    assert said == ["not used: /thrusters/starboard/cmd.data"]
 
 
 @pytest.mark.parametrize("frame", ["odom", "ned"])

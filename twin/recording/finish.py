@@ -15,6 +15,7 @@ from twin.recording.timebase import (
     rebuilt,
     refuse_backwards,
     refuse_leaps,
+    refuse_standing,
 )
 
 FEWEST_ROWS = 10
@@ -39,6 +40,7 @@ def finished(raw: Raw, controls: bool = True) -> Finished:
     if raw.rebuild is not False:
         raw.time_s, how = rebuilt(raw.path, raw.time_s, raw.rebuild)
         raw.notes.append(how)
+    refuse_standing(raw.path, raw.time_s)
     for name, values in raw.columns.items():
         raw.columns[name], blanked = plausible(name, values, raw.lines)
         raw.notes += blanked
@@ -93,11 +95,14 @@ def require(raw: Raw, controls: bool = True) -> None:
             n[:200] for n in raw.notes if tells_why(n, missing)
         ][:4]
         steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
+        needs = ", ".join(missing)
+        for control in [name for name in missing if name in CONTROLS][-1:]:
+            needs = needs.replace(control, f"{control} (or the channels of actuators, as port.command)")
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
-            f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
-            f'column, or say in a map which one it is (--map; {missing[0].split()[0]} = "COLUMN" under '
-            f"[columns] leaves the others as they are).{steady}"
+            f"{raw.path}: {kind}needs {needs}. {'; '.join(said)}{'. ' if said else ''}Add the column, or say in a "
+            f'map which one it is (twin import --map; {missing[0].split()[0]} = "COLUMN" under [columns] leaves '
+            f"the others as they are; --suggest-map writes one).{steady}"
             + " What is judged without the controls is imported with "
             "--without-controls." * (set(missing) <= set(CONTROLS))
         )

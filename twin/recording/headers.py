@@ -31,8 +31,8 @@ def own_names(path: Path, names: Sequence[str]) -> tuple[Map, tuple[str, ...]]:
     times = [name for name in TIMES if name in names]
     if not times:
         raise DataError(
-            f"{path}: has no column time_s or time_utc. {'; '.join(unused)[:300] or 'Its header is blank'}. "
-            "Rename it, or say in a map which column is the time (--map); --suggest-map writes one."
+            f"{path}: has no column time_s or time_utc. {held(names)}. Rename what is the time, or read the "
+            f"file by a map: twin import {path} --suggest-map -o map.toml proposes one."
         )
     return Map(time=own_time(times[0]), columns=columns), unused
 
@@ -63,6 +63,13 @@ def overlaid(by: Map, names: Sequence[str]) -> Map:
     times = [name for name in TIMES if name in names]
     time = by.time or (own_time(times[0]) if times else None)
     return replace(by, columns={**own, **by.columns}, time=time)
+
+
+def held(names: Sequence[str]) -> str:
+    """The first columns of a header, by their names."""
+    first = [repr(name) for name in names if name]
+    more = f" and {len(first) - 8} more" * (len(first) > 8)
+    return f"Its columns are {', '.join(first[:8])}{more}" if first else "Its header is blank"
 
 
 def over_ground(names: Collection[str]) -> dict[str, Column]:

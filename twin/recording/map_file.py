@@ -1,5 +1,6 @@
 """A map from its TOML file (format: docs/import.md); a mistake in it is a SettingsError that says where."""
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import fields
@@ -9,6 +10,7 @@ from typing import Any
 from twin.errors import SettingsError, did_you_mean
 from twin.live.signals.channels import BY_NAME
 from twin.num import as_given
+from twin.physics.actuators.actuator_channels import CHANNELS_OF
 from twin.recording.mapping import (
     FRAMED,
     FRAMES,
@@ -225,9 +227,16 @@ def number(value: Any, where: str) -> float:
     return float(value)
 
 
+def of_actuator(owner: str, last: str) -> str:
+    """The channel of an actuator that is written most alike; "" when none is."""
+    near = f"{re.sub('[^a-z0-9_]+', '_', owner.lower())}.{nearest(last, CHANNELS_OF)}"
+    return near if near in BY_NAME else ""
+
+
 def channel_name(name: str, where: str) -> None:
     """SettingsError: no channel has this name."""
     if name not in NAMES and name not in BY_NAME:
-        near = nearest(name, NAMES)
+        owner, _, last = name.rpartition(".")
+        near = of_actuator(owner, last) if owner else nearest(name, NAMES)
         hint = f" Did you mean {near!r}?" if near else ""
         raise SettingsError(f"{where}: no channel is called {name!r}.{hint} docs/import.md lists them.")

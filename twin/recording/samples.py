@@ -18,9 +18,9 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
     ch = BY_NAME[name]
     not_available = sentinel(name, values)
     values = np.where(not_available, np.nan, values)
-    if ch.wraps > 0.0:
-        values = np.where(np.isfinite(values), np.mod(values, ch.wraps), np.nan)
     with np.errstate(invalid="ignore"):
+        if ch.wraps > 0.0:
+            values = np.where(np.isfinite(values), np.mod(values, ch.wraps), np.nan)
         outside = ~np.isnan(values) & ~((values >= ch.low) & (values <= ch.high))
     notes = [f"{name}: {count(not_available, lines)} for 'not available'"] if not_available.any() else []
     if outside.any():

@@ -15,8 +15,9 @@ from twin.live.signals.channels import BY_NAME
 from twin.recording.cells import number_keys
 from twin.recording.formats import Format, recognised
 from twin.recording.formats.binary_tables import Packed
-from twin.recording.formats.choose import Sources, chosen
+from twin.recording.formats.choose import HEADING, MAGNETIC, SourceChoice, Sources, chosen, unused
 from twin.recording.formats.series_table import as_columns
+from twin.recording.formats.signals import Signals
 from twin.recording.formats.zipped import is_zip, unpacked
 from twin.recording.headers import column_names, names_by, overlaid, own_names
 from twin.recording.long_table import widened
@@ -141,23 +142,34 @@ def from_series(path: Path, kind: Format, by: Map | None, sources: Sources) -> R
             **given.columns,
         },
     )
-    wanted = list(dict.fromkeys(number_keys(by.columns.values())))
+    wanted = list(dict.fromkeys(map(str, number_keys(by.columns.values()))))
     for name in wanted:
         if name not in signals.series:
             known = list(signals.series)
             raise DataError(
                 f"{path}: this is {signals.says}, and it holds no "
-                f"{name!r}.{did_you_mean(str(name), known)} It holds "
+                f"{name!r}.{did_you_mean(name, known)} It holds "
                 f"{', '.join(known[:20])}."
             )
-    time_s, columns = as_columns(signals, map(str, wanted))
-    notes = [*signals.notes, *choice.notes]
+    time_s, columns = as_columns(signals, wanted)
+    notes = [*signals.notes, *of_own_map(signals, choice, by), *unused(signals, by.columns, wanted)]
     notes += [f"left out: {', '.join(f'{n} {what}' for what, n in signals.skipped.most_common(6))}"] * bool(
         signals.skipped
     )
     table = Table(path, np.arange(1, time_s.size + 1), dict(columns.items()), {})
     clock = clock_from_numbers(path, time_s, TimeColumn())
     return through(path, table, clock, by, notes, {"format": signals.says})
+
+
+def of_own_map(signals: Signals, choice: SourceChoice, by: Map) -> list[str]:
+    """What is to be said of the log's own choice, of those channels that a person's map left to it."""
+    kept = set(map(str, number_keys(by.columns.values())))
+    names = {c: e["column"] if isinstance(e, dict) else e for c, e in choice.columns.items()}
+    lost = {c for c, name in names.items() if name not in kept}
+    lost |= {signals.series[names[c]].quantity for c in lost}
+    lost |= {MAGNETIC} if HEADING in lost else set()
+    lost |= {s.quantity for s in signals.series.values() if s.name in kept - set(names.values())}
+    return [note for note in choice.notes if note.partition(":")[0] not in lost]
 
 
 def beside_map(own: dict[str, Any], given: Map) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """The [time] table of a map for an unknown table: which column is the clock, its unit or the form of its
 text."""
 
+import re
 from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
@@ -37,6 +38,7 @@ PARTS = {"year": "%Y", "month": "%m", "day": "%d", "hour": "%H", "minute": "%M",
 RESTS = (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec"), ("secs", "nanosecs"))
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))
 LOOKED_AT_ROWS = 50
+DAY_AND_MONTH = re.compile("%([dm])[/-]%(?!\\1)[dm][/-]")  # with points the day is always first
 
 
 def time_entry(files: Sequence[SeenColumns]) -> dict[str, Any]:
@@ -180,13 +182,26 @@ def text_format(stamps: Sequence[str]) -> dict[str, Any] | None:
     for form in TEXT_FORMATS:
         if form.startswith("%Y%m%d") and day < 8:
             continue
-        try:
-            for s in filled:
-                datetime.strptime(cut(s), form)
-        except ValueError:
-            continue
-        return {"format": form}
+        if read := read_by(filled, form):
+            return {"format": form} | other_order(filled, form, read)
     return None
+
+
+def read_by(stamps: Sequence[str], form: str) -> list[datetime]:
+    """The moments of the stamps; none where one of them is not of this form."""
+    try:
+        return [datetime.strptime(cut(s), form) for s in stamps]
+    except ValueError:
+        return []
+
+
+def other_order(stamps: Sequence[str], form: str, read: Sequence[datetime]) -> dict[str, Any]:
+    """What is to be confirmed of a date with strokes: it may be one with day and month exchanged."""
+    turned = re.sub("%[dm]", lambda m: "%m" if m[0] == "%d" else "%d", form)
+    if not DAY_AND_MONTH.match(form) or read_by(stamps, turned) in ([], list(read)):
+        return {}
+    first = "the day" if form.startswith("%d") else "the month"
+    return {"why": f"{first} first? CONFIRM"}
 
 
 def cut(stamp: str) -> str:

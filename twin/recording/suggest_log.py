@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from twin.recording.formats.choose import Sources, chosen
+from twin.recording.formats.choose import Sources, chosen, unused
 from twin.recording.formats.guess import Guess
 from twin.recording.formats.signals import PLACE, Signals
 from twin.recording.map_toml import lacking, quoted, toml
@@ -30,16 +30,23 @@ def of_signals(signals: Signals, sources: Sources) -> str:
     set_up = by_settings(signals)
     parts = {} if set_up or (not several(parts) and has_both(choice.columns)) else parts
     more = proposed(topics, own | taken, parts, {"column": CLOCK, "unit": "s"}, own)
-    taken_too = "What stands under [columns] first is taken without a map too; change what is wrong."
-    lines = [f"# {signals.path.name}: {signals.says}. {taken_too}", ""]
-    lines += [f"# {note}" for note in choice.notes]
-    lines += ["", "[columns]", *(f"{quoted(channel)} = {toml(c)}" for channel, c in choice.columns.items())]
     more |= {c: Entry(keys, [why]) for c, (keys, why) in set_up.items()}
     more |= engine_entry(signals, choice.columns | more)
     added = {c: e for c, e in more.items() if c not in choice.columns and not clashes(c, choice.columns)}
+    entries = choice.columns | {c: e.keys for c, e in added.items()}
+    taken_too = "What stands under [columns] first is taken without a map too; change what is wrong."
+    lines = [f"# {signals.path.name}: {signals.says}. {taken_too}", ""]
+    lines += [f"# {note}" for note in (*choice.notes, *unused(signals, entries, series_of(entries)))]
+    lines += ["", "[columns]", *(f"{quoted(channel)} = {toml(c)}" for channel, c in choice.columns.items())]
     lines += ["# by their names; read these with care"] * bool(added)
     lines += [f"{quoted(channel)} = {toml(e.keys)}  # {'; '.join(e.why)}" for channel, e in added.items()]
     return "\n".join(lines + lacking(choice.columns | added)) + "\n"
+
+
+def series_of(entries: dict[str, Any]) -> set[str]:
+    """The series that entries of a map name."""
+    names = [e["column"] if isinstance(e, dict) else e for e in entries.values()]
+    return {n for name in names for n in (name if isinstance(name, list) else [name])}
 
 
 def engine_entry(signals: Signals, columns: Any) -> dict[str, Entry]:

@@ -176,6 +176,15 @@ def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
     )
 
 
+def refuse_standing(path: Path, time_s: np.ndarray) -> None:
+    """`time_s` (N,) [s], not going back. DataError: it does not run on from the first row to the last."""
+    if not time_s[-1] > time_s[0]:
+        raise DataError(
+            f"{path}: all {time_s.size} rows have the same time. Is it the right time column, and the whole "
+            "of it (a date without its time of day)?"
+        )
+
+
 def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndarray, str]:
     """Even stamps in place of rounded ones, and a sentence that says so.
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from twin.errors import DataError, did_you_mean
-from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
+from twin.live.signals.channels import BY_NAME, CHANNELS, Channel, of_actuators
 from twin.num import as_given, num
-from twin.recording.finish import finished
+from twin.recording.finish import CONTROLS, finished
 from twin.recording.holes import HOLE_S, WAITS, sailed_s, steps_on
 from twin.recording.raw import Raw
 from twin.recording.resample import continuous, resampled, wrapped
@@ -96,8 +96,10 @@ class Voyage:
         return all(bool(np.isfinite(self[name]).any()) for name in names)
 
     def absent(self) -> tuple[str, ...]:
-        """Channels of the table without a single sample, in the table's order."""
-        return tuple(c.name for c in CHANNELS if not self.has(c.name))
+        """Channels of the table without a single sample, in the table's order; of a vessel with actuators not
+        the one rudder and shaft."""
+        others = CONTROLS if of_actuators(self.columns) else ()
+        return tuple(c.name for c in CHANNELS if not self.has(c.name) and c.name not in others)
 
     @property
     def duration_s(self) -> float:

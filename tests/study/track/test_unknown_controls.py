@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from bench.small_boats import ship_of
+from twin.errors import DataError
 from twin.physics.model import Model
 from twin.recording.checks import losses, of_voyages
 from twin.recording.unknown_controls import CONTROLS, gaps, known
@@ -83,3 +85,14 @@ def test_the_seconds_and_the_control_are_said(make, kvlcc2):
     (line,) = (text for text in losses(entries) if "rudder_angle_deg" in text)
     assert "changed in 1 gap" in line and "nothing is judged there" in line
     assert not any("control" in text for text in losses(of_voyages([whole], kvlcc2)))
+
+
+def test_the_voyage_of_another_vessel_is_told_by_what_drives_it(make, kvlcc2):
+    """Test: a tanker's voyage with the file of a boat of thrusters, and without its shaft. Expected: what it
+    has and what drives the other; then what it lacks."""
+    voyage = make(seed=1)
+    with pytest.raises(DataError, match="it has rudder_angle_deg, propeller_rate_rpm, and what drives"):
+        track(voyage, ship_of("thrusters"))
+    bare = without_controls(voyage, -1.0, 1e6, ("propeller_rate_rpm",))
+    with pytest.raises(DataError, match=r"The voyage has no propeller_rate_rpm\. Check the map"):
+        track(bare, kvlcc2)

@@ -11,12 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.live.signals.channels import of_actuators
 from twin.physics.actuators import Actuator
 from twin.physics.actuators.actuator_channels import DRIVES
 from twin.physics.ship import Ship
 from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.checks.wirings import RIGHT, OrderArrays, Wiring, stop, wirings
+from twin.recording.unknown_controls import CONTROLS, of_ship
 
 AXES = ("surge", "sway", "yaw")
 LENGTHS = (3, 6, 12, 24, 48)  # of windows, in steps of STEP_S at least
@@ -50,11 +52,13 @@ def actuators(view: VoyageView) -> Check:
     """Which wiring of its actuators explains its motion."""
     name = "actuators"
     ship = view.ship
+    others = ship is not None and driven_otherwise(view, ship)
+    if others:
+        return doubtful(name, others)
     if ship is None or not ship.actuators:
         return cannot_tell(name, "no ship file with actuators was given (--ship).")
-    missing = [c for a in ship.actuators for c in a.columns() if not view.voyage.has(c)]
-    if missing:
-        return cannot_tell(name, f"{', '.join(missing)} was not recorded.")
+    if not all(view.voyage.has(*a.columns()) for a in ship.actuators):
+        return cannot_tell(name, "nothing was recorded of what drives and steers the vessel.")
     tried = best_window(view, ship)
     if not tried:
         return cannot_tell(name, "it hardly moves under thrust that changes.")
@@ -65,13 +69,26 @@ def actuators(view: VoyageView) -> Check:
     return _answer(name, best, as_is, tried)
 
 
+def driven_otherwise(view: VoyageView, ship: Ship) -> str:
+    """That the voyage was recorded of other controls than the ship file has; "" where it has them all, or
+    none of any kind."""
+    wanted, v = of_ship(ship), view.voyage
+    missing = [c for c in wanted if not v.has(c)]
+    there = [c for c in (*CONTROLS, *of_actuators(v.columns)) if v.has(c)]
+    if not missing or not there or not (ship.actuators or of_actuators(there)):
+        return ""
+    return (
+        f"not recorded: {', '.join(missing)}; without that the voyage cannot be used with the file of "
+        f"{ship.name}. Recorded: {', '.join(there)}. Give each channel that is missing a line in the map "
+        "(--suggest-map proposes them), or leave out of the ship file what is not recorded."
+    )
+
+
 def _answer(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedWiring]) -> Check:
     rivals = [t for t in tried if t.wiring.mistakes <= best.wiring.mistakes and not _alike(t, best)]
     rival = max(rivals, key=lambda t: t.total)
-    saw = (
-        f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}; "
-        f"the next best, {rival.wiring.text}, {_shares(rival)}"
-    )
+    second = f"; the next best, {rival.wiring.text}, {_shares(rival)}" * (rival is not as_is)
+    saw = f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}{second}"
     sides = " (or exchange their x_m and y_m in the ship file)" * ("exchange" in best.wiring.fix)
     fix = f"In the map: {best.wiring.fix}{sides}"
     if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF):

@@ -59,8 +59,10 @@ def plausible_values(view: VoyageView) -> Check:
     """What reading blanked because no ship measures it."""
     notes = [n for n in view.voyage.meta.get("notes", ()) if "blanked" in n]
     if any("outside" in n for n in notes):
+        said = "; ".join(notes)
         return doubtful(
-            "plausible_values", f"{'; '.join(notes)}. In the map: unit, or [file] missing = [...]."
+            "plausible_values",
+            f"{said}{'.' * (not said.endswith('?'))} In the map: unit, or [file] missing = [...].",
         )
     return good("plausible_values", "; ".join(notes) or "every sample is one that a ship can have.")
 

@@ -24,6 +24,8 @@ OF_MOTION = (
     "wind",
     "other_ship",
 )
+STILL = "a channel that stands still"
+MOVES = (HEADING, "surge_velocity_mps", "yaw_rate_degps")  # what actuators are seen by
 # which relations a check's proof rests on beside its own: where one of them is broken it proves nothing
 WITNESSES: dict[str, tuple[str, ...]] = {
     "velocity_frame": ("turning",),
@@ -33,7 +35,7 @@ WITNESSES: dict[str, tuple[str, ...]] = {
     "speed_log": ("place", "course"),
     "wind": ("turning", "course"),
     "rudder_unit": ("turning",),
-    "actuators": ("turning", "place"),
+    "actuators": ("turning", "place", STILL),
 }
 Checks = Sequence[Callable[[VoyageView], Check]]
 
@@ -48,6 +50,8 @@ def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
     answers |= named
     answers["propeller_rate"] = of_this_ship(answers["propeller_rate"], answers["other_ship"], view)
     broken = {name for name, off in offs(coarse(without)).items() if off is not None and off > BROKEN}
+    if any(f"{channel} stays" in answers["frozen"].text for channel in MOVES):
+        broken.add(STILL)
     return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
 
 
@@ -91,8 +95,10 @@ def not_proved_beside(answer: Check, broken: set[str]) -> Check:
     doubted = [name for name in WITNESSES.get(answer.name, ()) if name in broken]
     if not answer.unusable or not doubted:
         return answer
-    return doubtful(
-        answer.name,
-        f"{answer.text} Not proved: {' and '.join(doubted)} of the same channels do not agree either; see "
-        "the other checks.",
+    others = [name for name in doubted if name != STILL]
+    why = (
+        f"{' and '.join(others)} of the same channels do not agree either"
+        if others
+        else f"it rests on {STILL}"
     )
+    return doubtful(answer.name, f"{answer.text} Not proved: {why}; see the other checks.")

@@ -21,7 +21,7 @@ def propeller_rate(view: VoyageView) -> Check:
     name = "propeller_rate"
     n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
     if not np.isfinite(n).any():
-        return cannot_tell(name, "no shaft was recorded.")
+        return cannot_tell(name, view.not_recorded("shaft"))
     on = thrust_on(view, n)
     under_way = on & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
     if np.count_nonzero(under_way) < 10 or view.speed < 0.05 or not view.way_on:

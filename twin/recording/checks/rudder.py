@@ -21,7 +21,7 @@ def rudder_sign(view: VoyageView) -> Check:
     """Which way the rudder turns the ship: where it is held over, or by its share in changes of yaw rate."""
     name = "rudder_sign"
     if not view.voyage.has("rudder_angle_deg"):
-        return cannot_tell(name, "no rudder was recorded.")
+        return cannot_tell(name, view.not_recorded("rudder"))
     if not view.way_on:
         return cannot_tell(
             name, "it has no way on, and a rudder turns only a ship that moves through the water."
@@ -112,7 +112,7 @@ def rudder_unit(view: VoyageView) -> Check:
     """A ship that turns far with a rudder of less than a degree has it in radians."""
     name = "rudder_unit"
     if not view.voyage.has("rudder_angle_deg"):
-        return cannot_tell(name, "no rudder was recorded.")
+        return cannot_tell(name, view.not_recorded("rudder"))
     most = float(np.nanmax(np.abs(view.voyage["rudder_angle_deg"])))
     swung = float(np.degrees(np.nanmax(view.psi) - np.nanmin(view.psi)))
     if most == 0.0:

@@ -31,7 +31,7 @@ def ship_size(view: VoyageView) -> Check:
     )
     if froude > FASTEST_FROUDE:
         return doubtful(name, f"{saw}: {num(speed, 3)} m/s is too fast for it. {other}")
-    if turning > TIGHTEST_TURN:
+    if turning > TIGHTEST_TURN and not view.ship.actuators:  # thrusters turn a vessel on the spot
         return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
     if draught and not 0.4 < draught / float(view.ship.T) < 2.0:
         return doubtful(

@@ -19,6 +19,7 @@ from twin.recording.checks.wirings import OrderArrays
 
 LONG_S = 8.0  # told the same for so long, and so many ship lengths at service speed
 LENGTHS = 10.0
+RUNNING_OUT = 0.25  # of that time, in which it may still be running out
 HELD = {"pwm": 2.0, "command": 0.005}  # by which what is told may stray meanwhile
 DRIFT_SHARE = 0.05  # of service speed: it drifts no faster, and yaws no faster over its length
 DRIVEN = 4.0  # times its speed that what is told should give
@@ -36,7 +37,12 @@ def actuator_zero(view: VoyageView) -> Check:
         return cannot_tell(name, "not every actuator was recorded.")
     rests = _rests(view, ship, parts)
     if not rests:
-        return cannot_tell(name, "it never lies still with its actuators told the same for a while.")
+        still, seconds = DRIFT_SHARE * float(ship.U_0), _least_s(ship) / (1.0 - RUNNING_OUT)
+        return cannot_tell(
+            name,
+            f"it never lies still (below {num(still, 2)} m/s over ground) for {seconds:.0f} s with its "
+            "actuators told the same.",
+        )
     first, last = max(rests, key=lambda ab: ab[1] - ab[0])
     told = {a.name: float(np.median(view.si(_channel(a))[first:last])) for a in parts}
     speed = float(np.median(np.abs(view.velocity[first:last])))
@@ -77,6 +83,11 @@ def _share(a: Actuator, told: float) -> float:
     return float(np.sign(c)) * full * float(a.linear + (1.0 - a.linear) * e) * e
 
 
+def _least_s(ship: Ship) -> float:
+    """How long it must lie still [s], when it has run out."""
+    return max(LONG_S, LENGTHS * float(ship.scale("time")))
+
+
 def _rests(view: VoyageView, ship: Ship, parts: tuple[Actuator, ...]) -> list[tuple[int, int]]:
     """From where to where it lay still, all of them told the same."""
     told: OrderArrays = {a.name: view.si(_channel(a)) for a in parts}
@@ -87,10 +98,10 @@ def _rests(view: VoyageView, ship: Ship, parts: tuple[Actuator, ...]) -> list[tu
     for a in parts:
         changes[1:] |= np.abs(np.diff(told[a.name])) > HELD[_drive(a)]
     cut = np.flatnonzero(changes | ~still)
-    least = max(LONG_S, LENGTHS * float(ship.scale("time"))) / view.step_s
+    least = _least_s(ship) / view.step_s
     out = []
     for a, b in pairwise([-1, *cut.tolist(), still.size]):
-        start = a + 1 + round(0.25 * (b - a))  # it may still be running out
+        start = a + 1 + round(RUNNING_OUT * (b - a))
         if b - start > least:
             out.append((start, b))
     return out

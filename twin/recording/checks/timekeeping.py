@@ -81,7 +81,7 @@ def time_gaps(view: VoyageView) -> Check:
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,
-        f"{gaps.size} gaps, {as_given(steps[gaps].sum(), 6)} s in all, the longest "
+        f"{gaps.size} gap{'s' * (gaps.size > 1)}, {as_given(steps[gaps].sum(), 6)} s in all, the longest "
         f"{as_given(steps[worst], 6)} s after {as_given(t[worst])} s. Nothing is filled in there; "
         "predictions are not run across them.",
     )

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from twin.live.signals.channels import of_actuators
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 
@@ -34,6 +35,12 @@ class VoyageView:
     def si(self, name: str) -> np.ndarray:
         """(N,) on the even grid, in SI."""
         return self.even.si(name)
+
+    def not_recorded(self, what: str) -> str:
+        """The sentence of a check of the one rudder or shaft, where there is none."""
+        if of_actuators(self.voyage.columns):
+            return "the vessel has actuators instead, and the check `actuators` asks how they push it."
+        return f"no {what} was recorded."
 
     def derived(self, *names: str) -> bool:
         """True when a column was made from others, so that comparing it with them proves nothing."""

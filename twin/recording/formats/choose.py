@@ -4,7 +4,7 @@ The answer is the table of a map, as a person would write it, so that what is ta
 `--suggest-map` writes and what a map says are one thing.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,8 +21,7 @@ Sources = Mapping[str, str]  # quantity or "" for all: the source to take
 
 
 class SourceChoice(NamedTuple):
-    """`columns` of a map by channel, and sentences: what was taken where there was a choice, what was not
-    used."""
+    """`columns` of a map by channel, and sentences: what was taken where there was a choice."""
 
     columns: dict[str, Any]
     notes: list[str]
@@ -68,8 +67,7 @@ def best(signals: Signals, quantity: str, sources: Sources, notes: list[str]) ->
 
 
 def chosen(signals: Signals, sources: Sources) -> SourceChoice:
-    """The columns of the log's own map; every series that no channel takes is named in one sentence.
-    SettingsError: the log has no such source."""
+    """The columns of the log's own map. SettingsError: the log has no such source."""
     known = {s.source for s in signals.series.values()}
     if sources.get("") and sources[""] not in known:
         raise SettingsError(f"--source {sources['']}: the log's sources are {', '.join(sorted(known))}.")
@@ -91,7 +89,7 @@ def chosen(signals: Signals, sources: Sources) -> SourceChoice:
         columns |= pair(
             signals, BODY, quantities, sources, notes, {"frame": frame} if frame != "body" else {}
         )
-    return SourceChoice(columns, notes + unused(signals, columns))
+    return SourceChoice(columns, notes)
 
 
 def pair(
@@ -155,18 +153,16 @@ def made_true(signals: Signals, magnetic: Series, variation: Series) -> Series:
     return out
 
 
-def unused(signals: Signals, columns: Mapping[str, Any]) -> list[str]:
-    """One sentence for quantities that no channel was taken from, and what would take them."""
-    taken = {c["column"] if isinstance(c, dict) else c for c in columns.values()}
-    used = {signals.series[n].quantity for n in taken if n in signals.series} | set(BY_NAME) - {
-        *BODY,
-        HEADING,
-    }
-    used |= {MAGNETIC, VARIATION} if HEADING in columns else set()
+def unused(signals: Signals, channels: Collection[str], taken: Collection[str]) -> list[str]:
+    """One sentence for quantities of which nothing was taken, and what would take them. `channels` of the
+    voyage, `taken` the series that they came from."""
+    used = set(BY_NAME) - {*BODY, HEADING}
+    used |= {signals.series[n].quantity for n in taken if n in signals.series} - {""}  # "" is many things
+    used |= {MAGNETIC, VARIATION} if HEADING in channels else set()
     left = [s.name for s in signals.series.values() if s.name not in taken and s.quantity not in used]
     out = [f"not used: {', '.join(left[:12])}{f' and {len(left) - 12} more' * (len(left) > 12)}"] * bool(left)
     engine = next((s for s in signals.series.values() if s.quantity == "engine_rate_rpm"), None)
-    if engine and "propeller_rate_rpm" not in columns:
+    if engine and engine.name not in taken and "propeller_rate_rpm" not in channels:
         ratio = f'propeller_rate_rpm = {{ column = "{engine.name}", factor = 1 / GEAR RATIO as a number }}'
         out.append(f"{engine.name} is the engine's rate, not the shaft's: in a map, {ratio}")
     return out

@@ -20,6 +20,7 @@ IMO = (  # MSC.137(76): figure, what it is called, its unit, its limit
     ("tactical_diameter_L", "tactical diameter", "L", 5.0),
     ("overshoot_20_20_deg", "first overshoot of the 20/20 zigzag", "deg", 25.0),
 )
+OF_ONE_SCREW = ("D_P", "A_R")  # an actuator has its own, and these stand for nothing
 FULL_C_B = 0.7  # block coefficient from which ships often do not go straight by themselves
 
 
@@ -47,6 +48,12 @@ def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
     if ship.actuators:
         return f"{100.0 * figures['power']:.0f} % of the power of {len(ship.actuators)} actuators {at}"
     return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
+
+
+def _helm(ship: Ship) -> str:
+    """How the turning circle is steered."""
+    turned = not ship.actuators or any("angle" in a.attributes for a in ship.actuators)
+    return " 35 deg" if turned else ", one side stopped and the other at twice its power"
 
 
 def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
@@ -79,7 +86,16 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     lines = [f"{ship.name}: a first model from its main particulars", ""]
     for f in PARTICULARS:
         source = notes[f.name]["source"]
-        mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
+        idle = bool(ship.actuators) and f.name in OF_ONE_SCREW
+        if idle and source != "given":
+            continue
+        mark = (
+            "not used: each actuator has its own"
+            if idle
+            else ""
+            if source == "given"
+            else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
+        )
         lines.append(
             f"  {f.name:5} {as_given(getattr(ship, f.name), 5):>12} {f.metadata['unit']:6} "
             f"{f.metadata['doc']:38} {mark}".rstrip()
@@ -94,7 +110,7 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
         "",
         "  sea trial of this model (estimates; how it turns is only roughly right until it is calibrated)",
         f"    {_driven(ship, figures, bridge)}",
-        f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "
+        f"    turning circle{_helm(ship)}: advance {figures['advance_L']:.1f} L, tactical diameter "
         f"{figures['tactical_diameter_L']:.1f} L,"
         f" {100 * figures['speed_left']:.0f} % of the speed left",
         f"    zigzag 20/20: first overshoot {'none' if over is None else f'{over:.0f} deg'};  {stable}",

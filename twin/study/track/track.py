@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
-from twin.live.signals.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME, of_actuators
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Situation
 from twin.recording.holes import HOLE_S, inside, longest, pieces
-from twin.recording.unknown_controls import known, of_ship
+from twin.recording.unknown_controls import CONTROLS, known, of_ship
 from twin.recording.voyage import Voyage
 from twin.study.track.motion_channels import MEASURED, READINGS
 from twin.study.track.outliers import Jump, outliers, stretches_of
@@ -150,11 +150,7 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     }
     whole = np.isfinite(np.array(list(controls.values()))).all(0)
     if not whole.any():
-        lacking = [name for name in hold_s if not voyage.has(name)]
-        said = f" The voyage has no {', no '.join(lacking)}." * bool(lacking)
-        raise DataError(
-            f"{voyage.name}: {' and '.join(hold_s)} are never there together.{said} Check the map."
-        )
+        raise DataError(f"{voyage.name}: {_no_controls(voyage, tuple(hold_s), ship.name)}")
     whole &= known(voyage, grid.time_s, tuple(hold_s))
     made = _made(voyage.name, grid, measured, controls, whole, ship, h)
     if not made.whole.any():
@@ -167,6 +163,19 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
         return made
     made = _made(voyage.name, grid, np.where(off, np.nan, measured), controls, whole, ship, h)
     return replace(made, jumps=stretches_of(off, made.t))
+
+
+def _no_controls(voyage: Voyage, wanted: tuple[str, ...], ship: str) -> str:
+    """Why nothing says what drives and steers the ship."""
+    lacking = [name for name in wanted if not voyage.has(name)]
+    others = [c for c in (*CONTROLS, *of_actuators(voyage.columns)) if voyage.has(c) and c not in wanted]
+    if lacking and others:
+        return (
+            f"it has {', '.join(others)}, and what drives {ship} is {', '.join(wanted)}. Is it another "
+            "ship's voyage? Else check the names in the map and in the ship file."
+        )
+    said = f" The voyage has no {', no '.join(lacking)}." * bool(lacking)
+    return f"{' and '.join(wanted)} are never there together.{said} Check the map."
 
 
 def _made(
