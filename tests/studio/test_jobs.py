@@ -39,7 +39,9 @@ def jobs(tmp_path, monkeypatch):
 def test_a_job_that_is_forgotten_in_the_middle_of_a_turn_holds_up_no_other(jobs, monkeypatch):
     names = jobs.names
     jobs.add(ASKED)
-    monkeypatch.setattr(jobs, "names", lambda: ["0000-look", *names()])  # listed, and gone when it is looked at
+    monkeypatch.setattr(
+        jobs, "names", lambda: ["0000-look", *names()]
+    )  # listed, and gone when it is looked at
     with pytest.raises(SettingsError, match="no such job"):
         jobs.state("0000-look")
     jobs.turn()

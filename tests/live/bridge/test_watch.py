@@ -208,7 +208,10 @@ def test_two_instruments_whose_names_differ_by_a_digit_have_two_alarms():
     """Test: the first is acknowledged, then the second goes wrong. Expected: the second one is new, and stands; each
     is still the same alarm when its number changes."""
     alarms = Alarms()
-    first, second = "clock of gyro/1: {} s behind this computer's", "clock of gyro/2: {} s behind this computer's"
+    first, second = (
+        "clock of gyro/1: {} s behind this computer's",
+        "clock of gyro/2: {} s behind this computer's",
+    )
     alarms.observe([first.format(3.2)], 0.0, 0.0)
     assert alarms.acknowledge("")
     alarms.observe([first.format(3.3), second.format(-9.9)], 1.0, 1.0)
