@@ -2,6 +2,7 @@
 
 import os
 import stat
+from argparse import Namespace
 
 import pytest
 
@@ -27,6 +28,20 @@ def test_a_pipe_is_written_into_and_no_file_takes_its_place(tmp_path):
     assert stat.S_ISFIFO(os.stat(pipe).st_mode) and os.read(reader, 100) == b"new\n"
     os.close(reader)
     assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
+
+
+def test_an_answer_may_go_into_a_pipe_whose_folder_nobody_may_write_to(tmp_path, monkeypatch):
+    """Test: `--json /dev/fd/63` and `/dev/stdout`, by one who is not root. Expected: promised; a new file beside it
+    is not, nor a pipe that may not be written to."""
+    os.mkfifo(tmp_path / "pipe")
+    rights = {str(tmp_path): False, str(tmp_path / "pipe"): True}
+    monkeypatch.setattr(os, "access", lambda path, _: rights[str(path)])
+    whole.promised(Namespace(json=str(tmp_path / "pipe")))
+    with pytest.raises(TwinError, match="its folder may not be written to"):
+        whole.promised(Namespace(json=str(tmp_path / "new.json")))
+    rights[str(tmp_path / "pipe")] = False
+    with pytest.raises(TwinError, match="it may not be written to"):
+        whole.promised(Namespace(json=str(tmp_path / "pipe")))
 
 
 @pytest.mark.parametrize("where", ["none/x.toml", "folder"])

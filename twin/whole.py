@@ -23,15 +23,20 @@ def promised(args: argparse.Namespace) -> None:
         path = Path(getattr(args, name, None) or "-")
         if path == Path("-"):
             continue
-        why = (
-            "it is a folder"
-            if path.is_dir()
-            else "there is no such folder"
-            if not path.parent.is_dir()
-            else ""
-        )
-        if why or not os.access(path.parent, os.W_OK):
-            raise _cannot(path, why or "its folder may not be written to", option or args.page_option)
+        if why := _not_writable(path):
+            raise _cannot(path, why, option or args.page_option)
+
+
+def _not_writable(path: Path) -> str:
+    """Why a file could not be written there; "" where it could. A device or a pipe (/dev/stdout, /dev/fd/63)
+    is written into and needs nothing of its folder."""
+    if path.is_dir():
+        return "it is a folder"
+    if path.exists() and not path.is_file():
+        return "" if os.access(path, os.W_OK) else "it may not be written to"
+    if not path.parent.is_dir():
+        return "there is no such folder"
+    return "" if os.access(path.parent, os.W_OK) else "its folder may not be written to"
 
 
 def not_over(output: str, kept: Sequence[str], force: bool) -> None:

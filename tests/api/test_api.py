@@ -97,6 +97,32 @@ def test_a_pattern_that_matches_nothing_is_said(tmp_path):
         twin.read_voyages(f"{tmp_path}/*.mcap")
 
 
+def test_a_file_whose_own_name_looks_like_a_pattern_is_read(tmp_path):
+    copy = tmp_path / "monday [1].mcap"
+    copy.write_bytes(MONDAY.read_bytes())
+    assert [len(v) for v in twin.read_voyages(copy)] == [len(twin.read_voyage(MONDAY))]
+
+
+def test_without_a_voyage_nothing_is_asked_and_a_name_is_no_voyage(tanker):
+    for ask in (
+        lambda of: twin.compare(tanker, of),
+        lambda of: twin.calibrate(tanker, of),
+        lambda of: twin.instruments(tanker, of),
+        lambda of: twin.add(tanker, "Wind", of),
+        lambda of: twin.tube(tanker, of),
+    ):
+        with pytest.raises(DataError, match="no voyage was given"):
+            ask([])
+        with pytest.raises(UsageError, match="is no voyage"):
+            ask("monday.mcap")
+
+
+@pytest.mark.parametrize("horizons_s", [[], [0.0], [-5.0], [float("nan")], [60.0, float("inf")]])
+def test_a_horizon_lies_ahead(tanker, monday, horizons_s):
+    with pytest.raises(UsageError, match="horizons_s"):
+        twin.compare(tanker, monday, horizons_s=horizons_s)
+
+
 def test_a_simulated_zigzag_turns_back_when_the_heading_passes_the_angle(tanker):
     run = twin.simulate(tanker, manoeuvre="zigzag_20", duration_s=1200.0)
     heading = (run.to_dataframe()["heading_true_north_deg"] + 180.0) % 360.0 - 180.0
@@ -119,6 +145,9 @@ def test_what_cannot_be_simulated_is_refused(tanker):
         twin.simulate(tanker, manoeuvre="loop")
     with pytest.raises(UsageError, match="duration_s"):
         twin.simulate(tanker, duration_s=-1.0)
+    for speed in (0.0, -3.0, float("nan"), 1e9):
+        with pytest.raises(UsageError, match="speed_mps"):
+            twin.simulate(tanker, speed_mps=speed)
 
 
 def test_a_ship_is_not_written_over_a_file_without_force(tanker, tmp_path):

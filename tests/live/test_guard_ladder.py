@@ -1,5 +1,6 @@
 """The guard by itself, on made-up measurements: each step of the ladder, each reason, and where its limits are."""
 
+from math import radians
 from types import SimpleNamespace
 
 import pytest
@@ -184,10 +185,11 @@ def test_the_hold_is_three_ship_lengths_unless_it_is_given(kvlcc2):
     assert judged(guard, long_s - 0.1).mode == "physics only" and judged(guard, long_s + 0.1).mode == "hybrid"
 
 
-def test_steps_and_a_set_clock_are_told_for_ten_seconds_eight_at_most(guard):
-    said = judged(guard, 0.0, steps={"x": 200.0}, clock_step_s=-1.2).reasons
+def test_steps_in_the_channels_unit_and_a_set_clock_are_told_for_ten_seconds_eight_at_most(guard):
+    said = judged(guard, 0.0, steps={"x": 200.0, "psi": radians(-12.5)}, clock_step_s=-1.2).reasons
     assert said == [
-        "x stepped by 200 (SI) and stayed: the new value is believed",
+        "north_m stepped by 200 and stayed: the new value is believed",
+        "heading_true_north_deg stepped by -12.5 and stayed: the new value is believed",
         "the wall clock was set by -1.2 s; the state is not touched",
     ]
     assert judged(guard, 9.9).reasons == said and judged(guard, 10.0).reasons == []

@@ -106,6 +106,19 @@ def test_a_voyage_of_one_sample_a_second_has_ticks_in_between(sailing, tmp_path)
     assert summary.ticks == 991 and set(summary.modes) == {"physics only"}
 
 
+def test_a_voyage_whose_time_begins_before_zero_is_replayed_into_a_log(sailing, tmp_path):
+    """Test: seconds counted from the rudder's order, the first 3 s before it. Expected: a log, though MCAP has no
+    time before 1970."""
+    with LogFile(tmp_path / "v.mcap") as log:
+        for k in range(50):
+            row = messages.Row(time_s=k / 10.0 - 3.0, **sailing.true())
+            log.add("voyage", "shiptwin.Row", row.SerializeToString(), round(k * 1e8))
+            sailing.advance()
+    chosen = settings(tmp_path, **{"residual.file": "none"})
+    assert replay(tmp_path / "v.mcap", chosen, tmp_path / "out.mcap").ticks == 50
+    assert [t.time_s for t in ticks(tmp_path / "out.mcap")][::49] == pytest.approx([-3.0, 1.9])
+
+
 def test_a_log_of_scalars_without_a_twin_is_sailed_too(sailing, tmp_path):
     path = tmp_path / "foreign.mcap"
     with LogFile(path) as log:

@@ -202,6 +202,7 @@ def test_effects_of_actuators_stand_in_a_ship_file():
         ({"channels": ["command", "angle_deg"]}, "has no angle"),
         ({"kind": "azimuth"}, "needs its angle"),
         ({"ahead_n": -3.0}, "lies outside"),
+        ({"ahead_n": {"value": 5.0, "unit": "kN"}}, "unit 'kN', but 'N' is expected"),
         ({"name": "Port side"}, "small letters"),
         ({"channels": ["rate_rpm"]}, "diameter_m"),
         ({"ahead": 3.0}, "ahead_n"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, frame, metres, quietly
-from twin.api.voyages import several
+from twin.api.voyages import at_least_one, several
 from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -122,7 +122,7 @@ def calibrate(
     `refused` says why. `progress(text)` is told every step. DataError when a voyage cannot be used. Seconds
     to minutes.
     """
-    every = [sailed(v, ship) for v in several(voyages)]
+    every = [sailed(v, ship) for v in at_least_one(voyages)]
     return of_sailed(ship, every, [sailed(v, ship) for v in several(held_out)], quietly(progress))
 
 

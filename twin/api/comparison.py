@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from twin.api.result import PathLike, Progress, Result, frame, metres, quietly
-from twin.api.voyages import several
+from twin.api.voyages import at_least_one
+from twin.errors import UsageError
 from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -99,10 +101,13 @@ def compare(
     errors together.
 
     `horizons_s`: how far ahead [s]. `residual`: an ONNX file of what was learned, added as the loop adds it.
-    DataError when a voyage cannot be used or holds no stretch as long as the shortest horizon.
+    DataError when a voyage cannot be used or holds no stretch as long as the shortest horizon; UsageError for
+    a horizon that is not ahead.
     """
+    if not len(horizons_s) or not all(0.0 < h < inf for h in horizons_s):
+        raise UsageError(f"horizons_s = {[*horizons_s]}: at least one number of seconds above 0 is needed.")
     quietly(progress)("predicting")
-    return of_sailed(ship, [sailed(v, ship) for v in several(voyages)], horizons_s, residual)
+    return of_sailed(ship, [sailed(v, ship) for v in at_least_one(voyages)], horizons_s, residual)
 
 
 def of_sailed(

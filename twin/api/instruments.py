@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, quietly
-from twin.api.voyages import several
+from twin.api.voyages import at_least_one
 from twin.errors import UsageError
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
@@ -118,7 +118,7 @@ def instruments(
         raise UsageError(
             f"velocity_by={velocity_by!r}: give {' or '.join(map(repr, FRAMES))}, or leave it out."
         )
-    asked = several(voyages)
+    asked = at_least_one(voyages)
     of_voyages(asked)
     if velocity_by:
         asked = [v.with_meta(velocity_frame=FRAMES[velocity_by]) for v in asked]

@@ -25,6 +25,7 @@ COLUMNS = (
     "yaw_rate_degps",
 )
 NOT_IN_STILL_WATER = {"wind_speed", "wind_to", "depth", "H_s", "bank_port", "bank_starboard", "phi"}
+FASTEST_SAILED = 4.0  # times the service speed: no model of a hull holds beyond
 KNOWN = "straight, zigzag_ANGLE, circle_ANGLE (degrees, such as zigzag_20; a circle to port is circle_-35)"
 
 
@@ -75,11 +76,18 @@ def simulate(
     (default: service speed).
 
     `manoeuvre`: straight, zigzag_ANGLE or circle_ANGLE with the angle in degrees (positive: starboard first).
-    UsageError when there is no such manoeuvre or the duration is not positive.
+    UsageError when there is no such manoeuvre or duration or speed is not positive.
     """
     if not 0.0 < duration_s <= 1e6:
         raise UsageError(f"duration_s = {as_given(duration_s)}: seconds between 0 and 1e6 are needed.")
-    model, speed = Model.of(ship).without_inputs(NOT_IN_STILL_WATER)[0], speed_mps or float(ship.U_0)
+    speed = float(ship.U_0) if speed_mps is None else speed_mps
+    if not 0.0 < speed <= FASTEST_SAILED * ship.U_0:
+        most = as_given(FASTEST_SAILED * ship.U_0, 3)
+        raise UsageError(
+            f"speed_mps = {as_given(speed)}: above 0 and at most {most} m/s is needed, "
+            f"{as_given(FASTEST_SAILED)} times the service speed."
+        )
+    model = Model.of(ship).without_inputs(NOT_IN_STILL_WATER)[0]
     log = sail(model, _steer(manoeuvre), shaft_speed(model, speed), duration_s, speed)
     columns: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for t, state in log:

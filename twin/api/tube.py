@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, metres, quietly
-from twin.api.voyages import several
+from twin.api.voyages import at_least_one
 from twin.errors import DataError
 from twin.live.learning.residual import ship_hash
 from twin.live.prediction.calibrated import SECTION, calibrated_of
@@ -103,9 +103,7 @@ def tube(
     nine voyages; of fewer the best level they can show is promised. DataError when a voyage cannot be used,
     is proved wrong or is given twice. A few seconds for ten minutes of voyage.
     """
-    tell, every = quietly(progress), several(voyages)
-    if not every:
-        raise DataError("no voyage was given. Give some on which nothing was wrong.")
+    tell, every = quietly(progress), at_least_one(voyages)
     _once(every)
     of_voyages(every, ship)
     with tempfile.TemporaryDirectory() as folder:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, frame, metres, quietly
-from twin.api.voyages import several
+from twin.api.voyages import at_least_one, several
 from twin.errors import UsageError
 from twin.physics.effect import Effect
 from twin.physics.effects import find
@@ -127,7 +127,7 @@ def add(
     if not names:
         raise UsageError("no effect to add. `twin.diagnose(...).effects` may be empty: look at its sentence.")
     chosen = [find(name) for name in dict.fromkeys(names)]
-    used, kept = ([sailed(v, ship) for v in several(vs)] for vs in (voyages, held_out))
+    used, kept = ([sailed(v, ship) for v in vs] for vs in (at_least_one(voyages), several(held_out)))
     return of_sailed(ship, chosen, used, kept, cross_validated, force, quietly(progress))
 
 

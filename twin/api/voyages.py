@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from twin.api.result import PathLike
-from twin.errors import DataError
+from twin.errors import DataError, UsageError
 from twin.recording.import_voyage import accepted
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage as read
@@ -33,19 +33,32 @@ def read_voyage(
 def read_voyages(
     paths: PathLike | Iterable[PathLike], map: PathLike | None = None, *, accept: Sequence[str] = ()
 ) -> list[Voyage]:
-    """Several voyages: paths, or one pattern such as "calm/*.mcap", in the order of their names; `accept` as
-    for one.
+    """Several voyages: paths, or one pattern such as "calm/*.mcap", in the order of their names; a file whose
+    own name has such signs is itself. `accept` as for one.
 
     DataError when a pattern matches nothing or a file cannot be used.
     """
     if isinstance(paths, str | os.PathLike):
-        found = sorted(glob.glob(os.fspath(paths)))
+        name = os.fspath(paths)
+        found = [name] if os.path.isfile(name) else sorted(glob.glob(name))
         if not found:
-            raise DataError(f"{os.fspath(paths)}: no file has such a name. Check the folder and the pattern.")
+            raise DataError(f"{name}: no file has such a name. Check the folder and the pattern.")
         paths = found
     return [read_voyage(path, map, accept=accept) for path in paths]
 
 
 def several(voyages: Voyage | Iterable[Voyage]) -> list[Voyage]:
-    """One voyage or many, as a list."""
-    return [voyages] if isinstance(voyages, Voyage) else list(voyages)
+    """One voyage or many, or none, as a list; UsageError for what is no voyage."""
+    found = [voyages] if isinstance(voyages, Voyage | str | os.PathLike) else list(voyages)
+    for one in found:
+        if not isinstance(one, Voyage):
+            raise UsageError(f"{one!r} is no voyage. Read the file first, with twin.read_voyage(...).")
+    return found
+
+
+def at_least_one(voyages: Voyage | Iterable[Voyage]) -> list[Voyage]:
+    """The same, DataError where there is none."""
+    found = several(voyages)
+    if not found:
+        raise DataError("no voyage was given. Name at least one.")
+    return found

@@ -174,7 +174,8 @@ def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certifica
     line."""
     import subprocess  # here and not above: only the first start needs it
 
-    command = [sys.executable, "-c", CERTIFY.format(arguments)]
+    # -P: no module of the folder that it runs in
+    command = [sys.executable, "-P", "-c", CERTIFY.format(arguments)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=patience_s, check=True)
         return Certificate.from_json(done.stdout), ""

@@ -11,6 +11,7 @@ from twin.live.gates.plausible import Plausibility
 from twin.live.learning.learned_force import Learned, LearnedForce
 from twin.live.observer.controls import ONE_SCREW, controls_of
 from twin.live.observer.estimate import Estimate
+from twin.live.signals.channels import BY_NAME, CHANNELS
 from twin.live.signals.measured import Measured
 from twin.num import as_given
 from twin.physics.ship import Ship
@@ -23,6 +24,7 @@ STARTING, HYBRID, PHYSICS, RECKONING, INVALID = (
     "invalid",
 )
 CONTROLS = ONE_SCREW
+BY_ATTRIBUTE = {c.attribute: c for c in CHANNELS}
 WORSE, BETTER = 1.1, 0.9  # error with the learned force over the error without: off above, on again below
 CLIPPED_SHARE = 0.5
 NO_HEADING = "no heading"
@@ -168,11 +170,10 @@ class Guard:
     def _announce(self, measured: Measured) -> None:
         now_s = measured.now_s
         for attribute, step in measured.steps.items():
+            channel = BY_ATTRIBUTE.get(attribute) or BY_NAME[self.controls[attribute]]
+            by = as_given(step / channel.to_si, 4)
             self._announced.append(
-                (
-                    now_s,
-                    f"{attribute} stepped by {as_given(step, 4)} (SI) and stayed: the new value is believed",
-                )
+                (now_s, f"{channel.name} stepped by {by} and stayed: the new value is believed")
             )
         if measured.clock_step_s:
             self._announced.append(

@@ -106,7 +106,7 @@ def _sailed(
         batch = waiting.pop()
         if file:
             for message in batch.raw:
-                file.add(message.topic, message.type_name, message.data, round(batch.wall_s * 1e9))
+                file.add(message.topic, message.type_name, message.data, round(instant.wall_s * 1e9))
         ears.next = batch.results
         ears.datum = played.decoder.datum
         tick = loop.tick(instant)

@@ -145,22 +145,17 @@ def _effect(name: str, values: Mapping[str, Any], ship: ShipNumbers, where: str)
         if key not in known and key not in ("source", "learned"):
             raise SettingsError(f"{where}effects.{name}.{key}: no such parameter.{did_you_mean(key, known)}")
         if key in known:
-            numbers[key] = value_of(entry, f"{where}effects.{name}.{key}")
-            _same_unit(entry, known[key].unit, f"{where}effects.{name}.{key}")
+            numbers[key] = value_of(entry, f"{where}effects.{name}.{key}", known[key].unit)
     made = effect.plausible(ship).but(**numbers)
     made.check(ship, where)
     return made
 
 
-def _same_unit(entry: Any, unit: str, where: str) -> None:
-    given = entry.get("unit", unit) if isinstance(entry, Mapping) else unit
-    if given != unit:
-        raise SettingsError(f"{where}: unit {given!r}, but {unit!r} is expected. Convert the value.")
-
-
-def value_of(entry: Any, where: str) -> float:
-    """A number of a ship file, a table or plain. SettingsError: it is not finite, or no number."""
-    value = entry.get("value") if isinstance(entry, Mapping) else entry
+def value_of(entry: Any, where: str, unit: str) -> float:
+    """A number of a ship file, a table or plain, in this unit. SettingsError: it is not finite, no number, or
+    of another unit."""
+    told = entry if isinstance(entry, Mapping) else {"value": entry}
+    value, given = told.get("value"), told.get("unit", unit)
     if (
         isinstance(value, bool)
         or not isinstance(value, (int, float))
@@ -170,6 +165,8 @@ def value_of(entry: Any, where: str) -> float:
         raise SettingsError(
             f'{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.'
         )
+    if given != unit:
+        raise SettingsError(f"{where}: unit {given!r}, but {unit!r} is expected. Convert the value.")
     return float(value)
 
 
@@ -179,12 +176,12 @@ def _numbers(table: Mapping[str, Any], known: tuple[Any, ...], where: str) -> di
     for key, entry in table.items():
         if key not in by_name:
             raise SettingsError(f"{where}{key}: no such number.{did_you_mean(key, by_name)}")
-        meta, value = by_name[key], value_of(entry, where + key)
+        meta = by_name[key]
+        value = value_of(entry, where + key, meta["unit"])
         if not meta["lo"] <= value <= meta["hi"]:
             raise SettingsError(
                 f"{where}{key} = {as_given(value)} {meta['unit']} lies outside [{as_given(meta['lo'])}, "
                 f"{as_given(meta['hi'])}] ({meta['doc']}). Check its unit."
             )
-        _same_unit(entry, meta["unit"], where + key)
         out[key] = value
     return out

@@ -100,9 +100,9 @@ def require(raw: Raw, controls: bool = True) -> None:
             needs = needs.replace(control, f"{control} (or the channels of actuators, as port.command)")
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
-            f"{raw.path}: {kind}needs {needs}. {'; '.join(said)}{'. ' if said else ''}Add the column, or say in a "
-            f'map which one it is (twin import --map; {missing[0].split()[0]} = "COLUMN" under [columns] leaves '
-            f"the others as they are; --suggest-map writes one).{steady}"
+            f"{raw.path}: {kind}needs {needs}. {'; '.join(said)}{'. ' if said else ''}Add the column, or say "
+            f'in a map which one it is (twin import --map; {missing[0].split()[0]} = "COLUMN" under [columns] '
+            f"leaves the others as they are; --suggest-map writes one).{steady}"
             + " What is judged without the controls is imported with "
             "--without-controls." * (set(missing) <= set(CONTROLS))
         )

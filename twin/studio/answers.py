@@ -1,7 +1,6 @@
 """What a worker does for each verb: the Python interface's function, its JSON, and what the pages draw."""
 
 import difflib
-import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -74,7 +73,7 @@ def diagnose(asked: Request, job: Path, tell: Tell) -> None:
     voyages, references = ([read_voyage(p) for p in asked.get(key, [])] for key in ("voyages", "references"))
     done = judged(voyages, ship, references, tell)
     result = done.result | {
-        "command": f"twin diagnose {shlex.join(asked['voyages'])} --ship {shlex.quote(asked['ship'])}",
+        "command": command_of(asked),
         "verdict_text": done.result["sentence"],
         "files": {"ship": asked["ship"], "voyages": asked["voyages"]},
     }

@@ -78,7 +78,8 @@ class Studio:
 
         async def turns() -> None:
             while True:
-                await run_in_threadpool(self.jobs.turn)
+                with suppress(TwinError, OSError):  # such as a full disk: the next turn tries again
+                    await run_in_threadpool(self.jobs.turn)
                 await anyio.sleep(TURN_S)
 
         async with anyio.create_task_group() as group:

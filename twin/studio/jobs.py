@@ -73,12 +73,21 @@ class Jobs:
         for name, worker in list(self._ours.items()):
             if worker.poll() is not None:
                 del self._ours[name]
-        states = {name: self.state(name) for name in self.names()}
+        states = self._states()
         for name in [n for n, state in states.items() if state == "died" and n not in self._tidied]:
             self._tidy(name)
         free = AT_ONCE - sum(state == "running" for state in states.values())
-        for name in [n for n, state in states.items() if state == "waiting"][: max(free, 0)]:
+        waiting = [n for n, state in states.items() if state == "waiting" and n not in self._ours]
+        for name in waiting[: max(free, 0)]:
             self._start(name)
+
+    def _states(self) -> dict[str, str]:
+        """Of all jobs, but those that were forgotten since they were listed."""
+        found = {}
+        for name in self.names():
+            with suppress(SettingsError):
+                found[name] = self.state(name)
+        return found
 
     def _tidy(self, name: str) -> None:
         """What the worker of a job that died left beside the ship file that it was writing."""
@@ -151,7 +160,11 @@ class Jobs:
         }
 
     def all_told(self) -> list[dict[str, Any]]:
-        return [self.report(name) for name in self.names()]
+        told = []
+        for name in self.names():
+            with suppress(SettingsError):  # forgotten meanwhile
+                told.append(self.report(name))
+        return told
 
     def cancel(self, name: str) -> None:
         """Ends the worker of a job, and notes it: it has written nothing into the project. A worker that is
@@ -168,9 +181,10 @@ class Jobs:
 
     def forget(self, name: str) -> None:
         """Takes a job that is over out of the project, with what it found."""
-        if self.state(name) in ("waiting", "running"):
-            raise SettingsError(f"{name}: is at work. Cancel it first.")
-        shutil.rmtree(self.at(name))
+        with self._turning:
+            if self.state(name) in ("waiting", "running"):
+                raise SettingsError(f"{name}: is at work. Cancel it first.")
+            shutil.rmtree(self.at(name))
 
     def _usual_s(self, note: Mapping[str, Any]) -> float | None:
         """How long this verb took in this project, by the bytes that it read; None before the first."""

@@ -6,10 +6,11 @@ Nothing is computed for it: it holds what the work done in the folder has found,
 import os
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from twin import __version__, whole
-from twin.errors import TwinError
+from twin.errors import SettingsError, TwinError
 from twin.num import as_given, num
 from twin.physics.ship import load
 from twin.recording.jsonable import plain
@@ -91,10 +92,11 @@ def answers(project: Project) -> list[JobAnswer]:
     """What the work done here has found, the oldest first; an answer whose files are damaged is left out."""
     jobs, out = Jobs(project), []
     for name in jobs.names():
-        note, end, result = (read(jobs.at(name) / f) for f in (JOB, END, "result.json"))
-        if note and end and result and jobs.state(name) in OVER:
-            asked, command = note.get("asked", {}), str(note.get("command", ""))
-            out.append(JobAnswer(name, asked, command, result, float(end.get("ended_s", 0.0))))
+        with suppress(SettingsError):  # a job that was forgotten since
+            note, end, result = (read(jobs.at(name) / f) for f in (JOB, END, "result.json"))
+            if note and end and result and jobs.state(name) in OVER:
+                asked, command = note.get("asked", {}), str(note.get("command", ""))
+                out.append(JobAnswer(name, asked, command, result, float(end.get("ended_s", 0.0))))
     return out
 
 

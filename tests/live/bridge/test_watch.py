@@ -202,3 +202,21 @@ def test_the_terminal_draws_pages_or_lines_as_often_as_is_good(watch, feed, tick
         drawn = stream.getvalue().count("\x1b[J") if pages else stream.getvalue().count("\n")
         assert 1 <= drawn <= most
         assert all(len(row) <= 120 for row in stream.getvalue().splitlines()) or not pages
+
+
+def test_two_instruments_whose_names_differ_by_a_digit_have_two_alarms():
+    """Test: the first is acknowledged, then the second goes wrong. Expected: the second one is new, and stands; each
+    is still the same alarm when its number changes."""
+    alarms = Alarms()
+    first, second = (
+        "clock of gyro/1: {} s behind this computer's",
+        "clock of gyro/2: {} s behind this computer's",
+    )
+    alarms.observe([first.format(3.2)], 0.0, 0.0)
+    assert alarms.acknowledge("")
+    alarms.observe([first.format(3.3), second.format(-9.9)], 1.0, 1.0)
+    alarms.observe([first.format(3.4), second.format(-10.1)], 2.0, 2.0)
+    assert [(a["text"], a["acknowledged"]) for a in alarms.listed()] == [
+        (second.format(-10.1), False),
+        (first.format(3.4), True),
+    ]

@@ -57,6 +57,17 @@ def test_a_frozen_instrument_by_the_second_writing(least, grain):
     assert Frozen().least == inf and Frozen().patience_s == 4.0
 
 
+def test_a_heading_that_goes_through_north_is_no_leap():
+    """Test: a compass of 0.1 deg turns slowly through north and then stands on its course for 12 s. Expected: the
+    same verdicts as on any other course, and none of them frozen."""
+    turned = [round(0.11 * k, 1) for k in range(120)]
+    way = [*turned, *[turned[-1]] * 60]
+    for start in (90.0, 350.0, -5.0):
+        compass = Frozen(least=1.5, wraps=360.0)
+        stuck = [compass.stuck(round((start + w) % 360.0, 1), 0.2 * k, 0.0) for k, w in enumerate(way)]
+        assert not any(stuck), start
+
+
 class NoiseAgain:
     """The memory of noise.py once more."""
 

@@ -78,7 +78,7 @@ def test_I4_a_step_that_lasts_is_refused_first_and_then_believed_and_announced(b
     assert all(t.quality.north_m == Quality.JUMP for t in first)
     assert abs(bridge.error(NORTH)) < 1.0
     later = bridge.run(1.0, step)
-    assert said(later, "x stepped by")
+    assert said(later, "north_m stepped by")
     assert abs(bridge.error(NORTH) - 200.0) < 2.0
 
 

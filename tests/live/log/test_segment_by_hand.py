@@ -2,10 +2,12 @@
 a call to the system fails."""
 
 import errno
+import fcntl
 import os
 
 import pytest
 
+from twin.errors import TwinError
 from twin.live.log import record, segment
 from twin.live.log.logfile import LogFile
 from twin.live.log.mcap_read import McapReader
@@ -57,6 +59,15 @@ def test_a_file_whose_head_cannot_be_written_leaves_nothing(tmp_path, monkeypatc
     with pytest.raises(OSError, match="full"):
         made(tmp_path)
     monkeypatch.undo()
+    assert list(tmp_path.iterdir()) == [] and descriptors() == before
+
+
+def test_a_disk_without_locks_leaves_neither_an_empty_file_nor_an_open_one(tmp_path, monkeypatch):
+    """The recorder tries again each second: what one try left would fill folder and table of files."""
+    monkeypatch.setattr(fcntl, "flock", lambda *_: (_ for _ in ()).throw(OSError(errno.ENOLCK, "no locks")))
+    before = descriptors()
+    with pytest.raises(OSError, match="no locks"):
+        made(tmp_path)
     assert list(tmp_path.iterdir()) == [] and descriptors() == before
 
 
@@ -197,3 +208,14 @@ def test_a_log_written_in_one_go_gives_its_file_back_also_when_it_fails(tmp_path
     with pytest.raises(KeyError), LogFile(tmp_path / "b.mcap") as log:
         raise KeyError
     assert descriptors() == before and [p.name for p in tmp_path.iterdir()] == ["a.mcap"]
+
+
+def test_a_log_takes_the_place_of_a_file_and_of_nothing_else(tmp_path):
+    """Expected: a device, a pipe or a folder of that name is named, and stays what it is."""
+    pipe = tmp_path / "pipe.mcap"
+    os.mkfifo(pipe)
+    (tmp_path / "folder.mcap").mkdir()
+    for place in (pipe, tmp_path / "folder.mcap"):
+        with pytest.raises(TwinError, match="is no file"), LogFile(place) as log:
+            log.add("a", TYPE, b"", 1)
+    assert pipe.is_fifo() and sorted(p.name for p in tmp_path.iterdir()) == ["folder.mcap", "pipe.mcap"]

@@ -56,6 +56,17 @@ def test_a_round_is_spread_over_ticks(kvlcc2):
     assert 2 <= sum(rounds) <= 4 and predictor.steps_a_tick <= 4
 
 
+def test_a_horizon_that_the_settings_name_twice_is_foretold_once(kvlcc2):
+    """A step of no length between the two would end the loop (the learned force's line has no slope there)."""
+    e, s = start(kvlcc2)
+    predictor, done = Predictor(kvlcc2, (60.0, 10.0, 10.0)), []
+    while not done:
+        done = predictor.advance(0.0, e, s, KnownDynamics(Model.of(kvlcc2)), nothing, True)
+        predictor.lead_s = 0.0
+    assert predictor.horizons_s == (10.0, 60.0)
+    assert [len(p.state) for p in done] == [6, 6]
+
+
 def test_until_past_errors_have_taught_it_the_uncertainty_is_a_prior_and_wide(make_bridge):
     ticks = make_bridge().run(10.0)
     first = next(t.predictions for t in ticks if t.predictions)

@@ -9,7 +9,8 @@ from typing import Any
 
 KEPT = 40  # alarms that are over and not acknowledged; the oldest go first
 HOLD_S = 3.0  # an alarm that comes and goes within this time is one
-_NUMBER = re.compile(r"[-+]?\d[\d.]*(?:e[-+]?\d+)?")
+# no digit of a name, such as gyro2 or gnss/1: two instruments have two alarms
+_NUMBER = re.compile(r"(?<![\w/'-])[-+]?\d[\d.]*(?:e[-+]?\d+)?")
 
 
 def key_of(text: str) -> str:

@@ -29,11 +29,12 @@ class Frozen:
         "_t",
         "least",
         "patience_s",
+        "wraps",
     )
 
-    def __init__(self, patience_s: float = 4.0, least: float = inf):
-        # `least`: the smallest motion that counts, border units
-        self.patience_s, self.least = patience_s, least
+    def __init__(self, patience_s: float = 4.0, least: float = inf, wraps: float = 0.0):
+        # `least`: the smallest motion that counts, border units; `wraps`: period of an angle, as in Channel
+        self.patience_s, self.least, self.wraps = patience_s, least, wraps
         self._last: float | None = None
         self._t = 0.0
         self._grain, self._change, self._repeating = inf, 0.0, 0.0
@@ -43,6 +44,8 @@ class Frozen:
         """Whether this sample shows a frozen instrument; `rate`: how the ship's motion changes it
         [unit/s]."""
         change, self._last = (abs(value - self._last) if self._last is not None else 0.0), value
+        if self.wraps and change > 0.5 * self.wraps:  # 359.9 to 0.1 deg: the short way round
+            change = abs((change + 0.5 * self.wraps) % self.wraps - 0.5 * self.wraps)
         dt, self._t = min(t - self._t, 5.0), t
         if change > 0.0 or self._change == 0.0:
             self._moves(change)

@@ -15,7 +15,7 @@ from twin.live.gates.noise import NoiseWatch
 from twin.live.gates.rivals import Rivals
 from twin.live.keelson.stamps import Stamps
 from twin.live.observer.estimate import HELD, Estimate
-from twin.live.signals.channels import CHANNELS
+from twin.live.signals.channels import CHANNELS, Channel
 from twin.live.signals.derive import CarriedHeading, RateFromHeading, SpeedFromPosition, true_wind
 from twin.live.signals.measured import Measured
 from twin.live.signals.readings import WORDS, Quality, Reading, Rejected
@@ -46,7 +46,7 @@ class Sensors:
         allowances = noise_allowances(ship)
         self._awaited = sources = dict(sources or {})  # channel: the source that should speak and has not yet
         self.gates = {
-            c.name: Gate(c, allowances.get(c.name, FAR), _frozen(c.name, allowances), sources.get(c.name))
+            c.name: Gate(c, allowances.get(c.name, FAR), _frozen(c, allowances), sources.get(c.name))
             for c in CHANNELS
         } | gates_of(ship, sources)
         if not ship.actuators:
@@ -262,7 +262,7 @@ def noise_allowances(ship: Ship) -> dict[str, float]:
     }
 
 
-def _frozen(name: str, allowances: dict[str, float]) -> Frozen | None:
-    if name in MOVING:
-        return Frozen(least=0.5 * allowances[name])
-    return Frozen() if name in NOISY else None
+def _frozen(channel: Channel, allowances: dict[str, float]) -> Frozen | None:
+    if channel.name in MOVING:
+        return Frozen(least=0.5 * allowances[channel.name], wraps=channel.wraps)
+    return Frozen(wraps=channel.wraps) if channel.name in NOISY else None

@@ -13,19 +13,27 @@ NAME = "twin.lock"
 @contextmanager
 def alone(folder: str) -> Iterator[None]:
     """The folder is this process's until the end, also when it is killed; TwinError (exit code 1: systemd
-    tries again) while another has it. Without a folder, or where none can be made, nobody is kept out."""
+    tries again) while another has it. Without a folder, or where none can be made or locked, nobody is kept
+    out."""
     fd = _opened(folder)
     try:
         if fd is not None:
-            fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(fd, folder)
         yield
+    finally:
+        if fd is not None:
+            os.close(fd)
+
+
+def _lock(fd: int, folder: str) -> None:
+    try:
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise TwinError(
             f"{folder}: another twin keeps what it learns here. Stop it, or choose another [state] folder."
         ) from None
-    finally:
-        if fd is not None:
-            os.close(fd)
+    except OSError:  # a disk that knows no locks
+        return
 
 
 def _opened(folder: str) -> int | None:

@@ -29,6 +29,8 @@ class LogFile:
         self._aside = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
 
     def __enter__(self) -> "LogFile":
+        if self.path.exists() and not self.path.is_file():  # a device or a pipe: the rename would replace it
+            raise TwinError(f"{self.path}: is no file that a log could stand in. Give the name of a file.")
         try:
             self._stream = open(self._aside, "wb")
         except OSError as failure:
@@ -85,7 +87,7 @@ def read(path: str | Path, notes: list[str] | None = None) -> Iterator[Message]:
 
 
 def read_rows(path: str | Path, notes: list[str] | None = None) -> "tuple[np.ndarray, dict[str, np.ndarray]]":
-    """(time_s (N,), {channel: (N,)}) of a log, NaN where nothing was measured; see `rows.read_rows`. Time
+    """(time_s (N,), {channel: (N,)}) of a log, NaN where nothing was measured; see `log_rows.read_rows`. Time
     in [s], channels in the unit in their name."""
     from twin.live.log.log_rows import read_rows as rows
 

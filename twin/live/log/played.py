@@ -7,7 +7,7 @@ on a grid.
 
 from collections import Counter
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -57,7 +57,7 @@ class PlayedLog:
     def batches(self) -> Iterator[Batch]:
         """The ticks in order; DataError when there is nothing the twin can use."""
         source = self._reader.messages()
-        first = [message for message, _ in zip(source, range(PEEK), strict=False)]
+        first = list(islice(source, PEEK))
         types = {message.type_name for message in first}
         whole = chain(first, source)
         if TICK in types:

@@ -138,7 +138,12 @@ def _create(folder: Path, name: str) -> tuple[Path, int]:
         except FileExistsError:
             number += 1
             continue
-        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:  # a disk that knows no locks: nothing is left behind, for this is tried each second
+            os.close(fd)
+            os.unlink(path)
+            raise
         return path, fd
 
 

@@ -70,7 +70,7 @@ class Predictor:
         refresh_s: float = 2.0,
         rate_hz: float = 10.0,
     ):
-        self.horizons_s = tuple(sorted(horizons_s))
+        self.horizons_s = tuple(sorted(set(horizons_s)))
         first = self.horizons_s[0]
         self.step_s = first / ceil(first / (STEP_LENGTHS * ship.L_pp / ship.U_0))
         steps = ceil(self.horizons_s[-1] / self.step_s) + len(self.horizons_s) + 1

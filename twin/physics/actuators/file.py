@@ -17,11 +17,12 @@ MAX_ACTUATORS = 16  # actuators of one ship
 NAME = r"[a-z][a-z0-9_]{0,30}"
 
 
-def read(
-    tables: Any, where: str, value: Callable[[Any, str], float]
-) -> tuple[tuple[Actuator, ...], dict[str, Any]]:
+ValueOf = Callable[[Any, str, str], float]  # of an entry, in its unit, or a SettingsError that says where
+
+
+def read(tables: Any, where: str, value: ValueOf) -> tuple[tuple[Actuator, ...], dict[str, Any]]:
     """The actuators, and by `name.number` what the file notes of each number (its standard error ...).
-    SettingsError: they are no such tables, or two have one name."""
+    SettingsError: they are no such tables, two have one name, or a number has another unit."""
     if (
         not isinstance(tables, list)
         or len(tables) > MAX_ACTUATORS
@@ -39,9 +40,7 @@ def read(
     return tuple(found), notes
 
 
-def _one(
-    table: Mapping[str, Any], where: str, value: Callable[[Any, str], float], notes: dict[str, Any]
-) -> Actuator:
+def _one(table: Mapping[str, Any], where: str, value: ValueOf, notes: dict[str, Any]) -> Actuator:
     name, kind, channels = (table.get(word) for word in WORDS)
     if not isinstance(name, str) or not re.fullmatch(NAME, name):
         raise SettingsError(f"{where}: name = {name!r} must be small letters, digits and _, such as port.")
@@ -61,7 +60,7 @@ def _one(
         if key not in KEYS:
             raise SettingsError(f"{where}: no number is called {key!r}.{did_you_mean(key, (*WORDS, *KEYS))}")
         f = KEYS[key]
-        numbers[f.name] = number = value(entry, f"{where}.{key}")
+        numbers[f.name] = number = value(entry, f"{where}.{key}", f.metadata["unit"])
         lo, hi = f.metadata["lo"], f.metadata["hi"]
         if not lo <= number <= hi:
             raise SettingsError(
