@@ -83,7 +83,7 @@ def test_an_answer_asked_anew_is_the_last_to_its_voyage_and_all_others_stay(tmp_
     facts.write_text(keep_answers.FACTS.read_text())
     asked = next(row for row in ANSWERS if row["asked"] == "first" and row["verdict"] == "missing")
     anew = {**asked, "verdict": "nothing_missing", "reason": "nothing", "missing": []}
-    kept_rows.write_anew([anew, {**anew, "key": "mmg-99-0"}], table, facts)
+    kept_rows.write_beside([(anew, "again"), ({**anew, "key": "mmg-99-0"}, "again")], table, facts)
     rows = kept_rows.read(table, facts)
     latest = {row["key"]: row for row in kept_rows.together(rows)}
     assert latest[asked["key"]]["verdict"] == "nothing_missing" and "mmg-99-0" not in latest

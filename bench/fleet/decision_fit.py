@@ -16,7 +16,7 @@ import numpy as np
 
 from bench.fleet import answer_score, probability_fit
 from bench.fleet.answer_score import Row, Share, share
-from bench.fleet.fleet_page import lines, read_facts, rows_of
+from bench.fleet.fleet_page import decided_again, lines, read_facts, rows_of
 from bench.fleet.probability_fit import logistic
 from twin.study.diagnosis import criteria, decision, naming
 from twin.study.diagnosis.calibrated_probability import FACTS
@@ -65,7 +65,7 @@ Decide = Callable[[Row], Answer]
 
 
 def by_table(row: Row) -> Answer:
-    d = decision.decide(row["read"])
+    d = decided_again(row, row["read"])
     return d.missing, d.verdict
 
 

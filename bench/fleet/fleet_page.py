@@ -18,7 +18,7 @@ from bench.fleet.hidden_causes import OF_THE_VOYAGE
 from bench.fleet.run import ROWS, read
 from bench.fleet.voyage_plan import practice
 from twin.errors import DataError
-from twin.study.diagnosis.decision import decide
+from twin.study.diagnosis.decision import Decision, decide
 from twin.study.diagnosis.facts import Facts
 
 RIGHT = (
@@ -169,8 +169,19 @@ def read_facts(row: Row) -> Facts:
 
 def decided(row: Row) -> dict[str, Any]:
     """The row with the answer that the decision of today gives to its facts."""
-    d = decide(read_facts(row))
+    d = decided_again(row, read_facts(row))
     return {**row, "missing": list(d.missing), "verdict": d.verdict, "reason": d.reason}
+
+
+def decided_again(row: Row, facts: Facts) -> Decision:
+    """What the table of today decides. An answer of two searches stays as it is: its facts are those of both,
+    and each was decided by its own."""
+    d = decide(facts)
+    if not row.get("further"):
+        return d
+    named = tuple(row["missing"])
+    others = {n: why for n, why in d.not_named.items() if n not in named}
+    return replace(d, verdict=row["verdict"], reason=row["reason"], missing=named, not_named=others)
 
 
 SHORT = {

@@ -1,6 +1,6 @@
 """Answers of the fleet put into docs/results, of which `python docs/results_page.py` makes the page on the
-judgement: `python -m bench.fleet keep --first FOLDER`; or voyages of them
-that were asked anew, put beside those: `python -m bench.fleet keep --anew FOLDER`."""
+judgement: `python -m bench.fleet keep --first FOLDER`; or put beside those, such as voyages of them that were
+asked again: `python -m bench.fleet keep --beside --again FOLDER`."""
 
 import argparse
 import json
@@ -24,26 +24,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             metavar="FOLDER",
             help=f"folders with rows.jsonl of {about}",
         )
-    parser.add_argument(
-        "--anew",
-        type=Path,
-        nargs="*",
-        default=[],
-        metavar="FOLDER",
-        help="folders with rows.jsonl of later answers, put beside what is kept as the last to each voyage",
-    )
+    parser.add_argument("--beside", action="store_true", help="put beside what is kept, not in its place")
 
 
 def run(args: argparse.Namespace) -> int:
     """The rows put down, and what families of ships ask of the decision for the one that is left out: of the
     first batch, and of all voyages, each with its latest answer. (Minutes.)"""
-    if args.anew:
-        kept_rows.write_anew(rows_of(args.anew), TABLE, FACTS)
-    else:
-        if not any(getattr(args, asked) for asked in kept_rows.TIMES):
-            raise UsageError("no folder of answers is given: --first FOLDER, or --anew FOLDER.")
-        answers = [(row, asked) for asked in kept_rows.TIMES for row in rows_of(getattr(args, asked))]
-        kept_rows.write(answers, TABLE, FACTS)
+    if not any(getattr(args, asked) for asked in kept_rows.TIMES):
+        raise UsageError("no folder of answers is given: --first FOLDER, or --beside --again FOLDER.")
+    answers = [(row, asked) for asked in kept_rows.TIMES for row in rows_of(getattr(args, asked))]
+    (kept_rows.write_beside if args.beside else kept_rows.write)(answers, TABLE, FACTS)
     rows = kept_rows.read(TABLE, FACTS)
     each = {"first": kept_rows.of_batch(rows, "first"), "together": kept_rows.together(rows)}
     fit = {name: decision_fit.chosen(decision_fit.with_facts(of)) for name, of in each.items()}

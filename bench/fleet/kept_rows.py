@@ -18,6 +18,7 @@ NONE: dict[Any, Any] = {bool: False, float: 0.0, float | None: None, tuple[str, 
 TIMES = {  # when a voyage was asked
     "first": "the first batch",
     "blind": "the second batch, which no fit had seen",
+    "third": "the third batch: ships that no fit had seen",
     "again": "later answers to voyages of either",
 }
 COLUMNS = (
@@ -30,6 +31,7 @@ COLUMNS = (
     "verdict",
     "reason",
     "named",
+    "further",
     "weather",
     "right",
     "posteriors",
@@ -74,6 +76,7 @@ def line(row: Row, asked: str) -> dict[str, str]:
         "verdict": row["verdict"],
         "reason": row["reason"],
         "named": "; ".join(row["missing"]),
+        "further": "; ".join(row.get("further", ())),
         "weather": "; ".join(sorted(answered_weather(row))),
         "right": "right" if right(row) else "wrong",
         "posteriors": _pairs({c["effect"]: _shown(posterior(c), 4) for c in row["candidates"]}),
@@ -107,14 +110,15 @@ def write(answers: Sequence[tuple[Row, str]], table: Path, facts: Path) -> None:
     _put([(line(row, asked), _facts_line(row)) for row, asked in answers], table, facts)
 
 
-def write_anew(rows: Sequence[Row], table: Path, facts: Path) -> None:
-    """Both files with these answers as the last to their voyages; voyages that are not kept are left out."""
+def write_beside(answers: Sequence[tuple[Row, str]], table: Path, facts: Path) -> None:
+    """Both files with these answers beside those that are kept, or in the place of what was asked of the same
+    voyage at the same time; one asked again of a voyage that is not kept is left out."""
     with table.open(newline="") as file:
         known = zip(csv.DictReader(file), facts.read_text().splitlines(), strict=True)
         kept = {(of["voyage"], of["asked"]): (of, told) for of, told in known}
-    for row in rows:
-        if {(row["key"], "first"), (row["key"], "blind")} & set(kept):
-            kept[row["key"], "again"] = line(row, "again"), _facts_line(row)
+    for row, asked in answers:
+        if asked != "again" or any((row["key"], time) in kept for time in TIMES):
+            kept[row["key"], asked] = line(row, asked), _facts_line(row)
     _put(sorted(kept.values(), key=lambda of: list(TIMES).index(of[0]["asked"])), table, facts)
 
 
@@ -174,6 +178,7 @@ def _row(of: Mapping[str, str], facts: dict[str, Any]) -> dict[str, Any]:
         "verdict": of["verdict"],
         "reason": of["reason"],
         "missing": named,
+        "further": [name for name in of["further"].split("; ") if name],
         "weather": [{"effect": name, "probability": 1.0} for name in sorted(told)],
         "candidates": [
             {"effect": name, "posterior": float(p), "parameters": _parameters(name, numbers)}

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.optimize import minimize
 
 from bench.fleet.answer_score import BY_NOW, Row, causes, posterior, share
-from bench.fleet.fleet_page import lines
+from bench.fleet.fleet_page import decided_again, lines
 from twin.study.diagnosis.calibrated_probability import FACTS, log_odds
-from twin.study.diagnosis.decision import Decision, decide
+from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts
 
 RIDGE = 1.0
@@ -47,7 +47,7 @@ def values(f: Facts, c: Cause, d: Decision) -> list[float]:
 def of_causes(row: Row) -> list[FactsAndTruth]:
     """Each cause of the explanation."""
     f: Facts = row["read"]
-    d = decide(f)
+    d = decided_again(row, f)
     return [(values(f, c, d), c.effect in _hidden(row)) for c in f.causes if c.in_explanation]
 
 
@@ -65,7 +65,7 @@ def _of_nothing(row: Row) -> list[FactsAndTruth]:
 
 
 def _of_unknown(row: Row) -> list[FactsAndTruth]:
-    verdict = decide(row["read"]).verdict
+    verdict = decided_again(row, row["read"]).verdict
     return [([log_odds(row["read"].unknown), float(verdict == "unknown")], row["kind"] == "outside")]
 
 
