@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -185,16 +186,13 @@ def test_what_is_no_wheel_leaves_nothing_behind(tmp_path):
 @pytest.fixture(scope="module")
 def wheels(wheel, tmp_path_factory):
     """A folder as deploy/wheels.sh makes it, with a lock of one small package of its own."""
-    folder, package = tmp_path_factory.mktemp("offline"), tmp_path_factory.mktemp("package")
-    (package / "pyproject.toml").write_text(
-        '[build-system]\nrequires = ["setuptools"]\nbuild-backend = '
-        '"setuptools.build_meta"\n[project]\nname = '
-        '"ballast-of-the-test"\nversion = "1.0"\n'
-    )
-    (package / "ballast_of_the_test.py").write_text("WEIGHT = 1\n")
-    command = ["python3", "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, package]
-    assert subprocess.run(command, capture_output=True, timeout=180).returncode == 0
-    small = next(folder.glob("ballast*.whl"))
+    folder = tmp_path_factory.mktemp("offline")
+    small, info = folder / "ballast_of_the_test-1.0-py3-none-any.whl", "ballast_of_the_test-1.0.dist-info"
+    with zipfile.ZipFile(small, "w") as file:
+        file.writestr("ballast_of_the_test.py", "WEIGHT = 1\n")
+        file.writestr(f"{info}/METADATA", "Metadata-Version: 2.1\nName: ballast-of-the-test\nVersion: 1.0\n")
+        file.writestr(f"{info}/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n")
+        file.writestr(f"{info}/RECORD", "")
     shutil.copy(wheel, folder)
     (folder / "requirements.lock").write_text(
         f"ballast-of-the-test==1.0 --hash=sha256:{hashlib.sha256(small.read_bytes()).hexdigest()}\n"

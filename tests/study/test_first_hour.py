@@ -3,31 +3,30 @@
 import json
 import re
 import shlex
-import subprocess
-import sys
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
 
+import bench.cli
+import twin.cli
 from twin.physics.ship import load
 
 PAGE = Path(__file__).parents[2] / "docs" / "tutorials" / "first-hour.md"
 COMMANDS = [
     line for block in re.findall(r"```sh\n(.*?)```", PAGE.read_text(), re.S) for line in block.splitlines()
 ]
-MODULES = {"twin": "twin.cli", "twin-bench": "bench.cli"}
+PROGRAMS = {"twin": twin.cli.main, "twin-bench": bench.cli.main}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Where the whole hour was sailed."""
     path = tmp_path_factory.mktemp("alma")
-    for command in COMMANDS:
-        program, *words = shlex.split(command)
-        done = subprocess.run(
-            [sys.executable, "-m", MODULES[program], *words], cwd=path, capture_output=True, text=True
-        )
-        assert done.returncode == 0, f"{command}\n{done.stderr[-800:]}"
+    with chdir(path):
+        for command in COMMANDS:
+            program, *words = shlex.split(command)
+            assert PROGRAMS[program](words) == 0, command
     return path
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import twin
-from tests.study.conftest import STEP_S, ship, voyage
+from tests.study.conftest import voyage
 from twin.physics.effects import find
 from twin.study.diagnosis import further, sentences
 from twin.study.diagnosis.answer import answer
@@ -15,34 +15,25 @@ from twin.study.diagnosis.search import MAX_CAUSES
 BIAS_RAD, EXTRA = 0.03, 0.3
 
 
-def planted(name: str, **numbers: float):
-    return find(name).absent(ship()).but(**numbers)
+@pytest.fixture(scope="module")
+def biased(tanker):
+    """A voyage of the tanker's own model with a compass bias and a fouled hull."""
+    hidden = {"HeadingBias": {"bias": BIAS_RAD}, "HullFouling": {"extra": EXTRA}}
+    effects = (find(name).absent(tanker).but(**numbers) for name, numbers in hidden.items())
+    return voyage(*effects, seed=3, seconds=900.0, of=tanker)
 
 
 @pytest.fixture(scope="module")
-def calibrated():
-    """The tanker after two healthy voyages."""
-    return twin.calibrate(ship(), [voyage(seed=i, seconds=900.0, step=2 * STEP_S) for i in (11, 12)]).ship
-
-
-@pytest.fixture(scope="module")
-def biased():
-    """A voyage with a compass bias and a fouled hull."""
-    hidden = planted("HeadingBias", bias=BIAS_RAD), planted("HullFouling", extra=EXTRA)
-    return voyage(*hidden, seed=3, seconds=900.0)
-
-
-@pytest.fixture(scope="module")
-def half(calibrated, biased):
+def half(tanker, biased):
     """An answer that names the bias alone."""
-    found = answer(assemble([biased], calibrated), [biased], calibrated)
+    found = answer(assemble([biased], tanker), [biased], tanker)
     assert set(found.causes) == {"HeadingBias", "HullFouling"}
     return replace(found, decision=replace(found.decision, missing=("HeadingBias",)))
 
 
 @pytest.fixture(scope="module")
-def whole(half, calibrated, biased):
-    return further.with_further(half, [biased], calibrated)
+def whole(half, tanker, biased):
+    return further.with_further(half, [biased], tanker)
 
 
 def test_a_cause_that_was_not_named_is_named_with_the_other_in_the_model(whole):
@@ -72,12 +63,11 @@ def test_the_facts_are_those_of_the_whole(whole, half):
     assert facts.left.error < facts.error_nothing
 
 
-def test_a_single_cause_stays_single_and_nothing_is_asked_twice(calibrated):
+def test_a_single_cause_stays_single_and_nothing_is_asked_twice(tanker, voyages):
     said: list[str] = []
-    alone = voyage(planted("HeadingBias", bias=BIAS_RAD), seed=3, seconds=900.0)
-    found = twin.diagnose(calibrated, alone, progress=said.append)
+    found = twin.diagnose(tanker, voyages["HeadingBias"], progress=said.append)
     assert (found.effects, found.data["further"]) == (["HeadingBias"], [])
-    assert not [line for line in said if line.startswith("asking again")]
+    assert said and not [line for line in said if line.startswith("asking again")]
 
 
 def test_a_second_look_is_taken_where_another_cause_would_add_to_the_evidence(half):
@@ -90,11 +80,11 @@ def test_a_second_look_is_taken_where_another_cause_would_add_to_the_evidence(ha
 
 @pytest.mark.parametrize("missing", [(), ("Current",), ("HeadingBias", "HullFouling", "RudderWear")])
 def test_an_answer_with_no_cause_or_with_as_many_as_there_may_be_is_not_asked_again(
-    half, calibrated, biased, missing
+    half, tanker, biased, missing
 ):
     assert MAX_CAUSES == 3
     told, said = replace(half, decision=replace(half.decision, missing=missing)), []
-    assert further.with_further(told, [biased], calibrated, (), said.append) is told
+    assert further.with_further(told, [biased], tanker, (), said.append) is told
     assert said == []
 
 
