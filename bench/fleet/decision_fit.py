@@ -16,7 +16,8 @@ import numpy as np
 
 from bench.fleet import answer_score, probability_fit
 from bench.fleet.answer_score import Row, Share, share
-from bench.fleet.fleet_page import decided_again, lines, read_facts, rows_of
+from bench.fleet.decided_again import decided_again, read_facts
+from bench.fleet.fleet_page import lines, rows_of
 from bench.fleet.probability_fit import logistic
 from twin.study.diagnosis import criteria, decision, naming
 from twin.study.diagnosis.calibrated_probability import FACTS

@@ -6,7 +6,8 @@ from typing import Any
 
 from bench.fleet import answer_score, decision_fit, probability_fit
 from bench.fleet.answer_score import Row, share
-from bench.fleet.fleet_page import FIGURES, SHORT, decided, figures, in_short, lines, page
+from bench.fleet.decided_again import decided
+from bench.fleet.fleet_page import FIGURES, SHORT, figures, in_short, lines, page
 from bench.fleet.kept_rows import of_batch, together
 from bench.fleet.voyage_plan import practice
 

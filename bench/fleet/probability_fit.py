@@ -13,7 +13,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from bench.fleet.answer_score import BY_NOW, Row, causes, posterior, share
-from bench.fleet.fleet_page import decided_again, lines
+from bench.fleet.decided_again import decided_again
+from bench.fleet.fleet_page import lines
 from twin.study.diagnosis.calibrated_probability import FACTS, log_odds
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts

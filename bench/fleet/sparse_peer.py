@@ -15,8 +15,9 @@ from typing import Any
 
 from bench.fleet import answer_score
 from bench.fleet.answer_score import Row, share
+from bench.fleet.decided_again import decided
 from bench.fleet.fact_rows import voyage
-from bench.fleet.fleet_page import decided, lines, rows_of
+from bench.fleet.fleet_page import lines, rows_of
 from bench.fleet.plausibility import build
 from bench.fleet.voyage_plan import FleetCase, sailed
 from bench.league.peer import POINTS_AT, peer
