@@ -46,7 +46,7 @@ class WhoseAnswer(NamedTuple):
     own: bool
     ratio: float
     fired: bool
-    told: bool  # whether the voyage could tell at all
+    informative: bool  # whether the voyage could tell at all
     said: str
     proved: list[str]
 
@@ -77,7 +77,7 @@ def kept_answers(path: Path) -> list[WhoseAnswer]:
     return [WhoseAnswer(**json.loads(line)) for line in lines if line.endswith("}\n")]
 
 
-def asked(
+def answer_of(
     key: str, group: str, hidden: str, ship: Ship, voyage: Voyage, own: bool, length: float
 ) -> WhoseAnswer:
     checks = {c.name: c for c in run_checks(voyage, ship)}
@@ -100,7 +100,7 @@ def of_sea(have: frozenset[str]) -> Iterator[WhoseAnswer]:
             hidden = "+".join(name for name, _ in sail[key].hidden)
             for file in wanted[key]:
                 by, length = f"{hull} by {file}", float(files[hull].L_pp)
-                yield asked(f"{key} by {file}", by, hidden, files[file], voyage, file == hull, length)
+                yield answer_of(f"{key} by {file}", by, hidden, files[file], voyage, file == hull, length)
 
 
 def cases(hull: str) -> Iterator[tuple[str, SeaCase]]:
@@ -133,11 +133,11 @@ def of_random(seeds: int, have: frozenset[str]) -> Iterator[WhoseAnswer]:
             for one, hidden in voyages:
                 key = f"{name} {one.name} by {name}"
                 if key not in have:
-                    yield asked(key, "random ships", hidden, file, of_fleet(one), True, ship.p.L)
+                    yield answer_of(key, "random ships", hidden, file, of_fleet(one), True, ship.p.L)
             for other, theirs in before[-NEIGHBOURS:]:
                 key = f"{name} {healthy[0].name} by {other}"
                 if key not in have:
-                    yield asked(key, "random ships", "", theirs, of_fleet(healthy[0]), False, ship.p.L)
+                    yield answer_of(key, "random ships", "", theirs, of_fleet(healthy[0]), False, ship.p.L)
             before.append((name, file))
 
 
@@ -177,5 +177,5 @@ def whose_page(answers: Sequence[WhoseAnswer]) -> str:
 
 
 def _row(words: str, some: Sequence[WhoseAnswer]) -> str:
-    fired, blind = sum(a.fired for a in some), sum(not a.told for a in some)
+    fired, blind = sum(a.fired for a in some), sum(not a.informative for a in some)
     return f"| {words} | {len(some)} | {fired} | {blind} | {sum(bool(a.proved) for a in some)} |"

@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from twin.recording.checks.check_result import Check, doubtful
+from twin.recording.checks.other_ship import as_its_own, other_ship
+from twin.recording.checks.propeller import with_believed_turns
 from twin.recording.checks.relations import offs
 from twin.recording.checks.single import BROKEN, Explained, coarse, explain
 from twin.recording.checks.steps import without_steps
@@ -48,19 +50,24 @@ def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
         again = {check.__name__: check(without) for check in checks if check.__name__ in OF_MOTION}
         answers |= {name: a for name, a in again.items() if name not in named}
     answers |= named
-    answers["propeller_rate"] = of_this_ship(answers["propeller_rate"], answers["other_ship"], view)
+    answers |= of_this_ship(answers, without)
     broken = {name for name, off in offs(coarse(without)).items() if off is not None and off > BROKEN}
     if any(f"{channel} stays" in answers["frozen"].text for channel in MOVES):
         broken.add(STILL)
     return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
 
 
-def of_this_ship(answer: Check, whose: Check, view: VoyageView) -> Check:
-    """The answer of `propeller_rate`: by a ship's propeller it proves a unit only where the rest of the
-    voyage is seen to be that ship's."""
-    if not answer.unusable or view.ship is None or (whose.ok and whose.informative):
-        return answer
-    return doubtful(answer.name, f"{answer.text} Not proved: {whose.name}: {whose.text}")
+def of_this_ship(answers: dict[str, Check], view: VoyageView) -> dict[str, Check]:
+    """`propeller_rate` and `other_ship` beside each other: by a ship's propeller a unit of the shaft is
+    proved only where the voyage, so mended, is seen to be that ship's; then it is no other ship's either."""
+    answer = answers["propeller_rate"]
+    if not answer.unusable or view.ship is None:
+        return {}
+    mended = with_believed_turns(view)
+    if as_its_own(mended):
+        return {"other_ship": other_ship(mended)}
+    text = f"{answer.text} Not proved: other_ship: {answers['other_ship'].text}"
+    return {"propeller_rate": doubtful(answer.name, text)}
 
 
 def named_mistakes(view: VoyageView, answers: dict[str, Check]) -> tuple[dict[str, Check], VoyageView]:

@@ -37,22 +37,15 @@ STRAIGHTEST = 0.3  # share of the windows that turn least
 
 def other_ship(view: VoyageView) -> Check:
     """Speed at its shaft and turning at its rudder against the ship in the file."""
-    name, ship = "other_ship", view.ship
-    if ship is None:
-        return cannot_tell(name, "give --ship to compare how it goes and turns with what its ship would do.")
-    if ship.actuators:
-        return cannot_tell(name, "the ship has actuators in the place of one propeller and one rudder.")
-    if not view.voyage.has("propeller_rate_rpm", "rudder_angle_deg") or not view.way_on:
-        return cannot_tell(name, "rudder and shaft of a ship that makes way would tell.")
-    model = Model.of(ship).without_inputs(set(WEATHER))[0]
-    speed = speed_ratio(view, model)
-    if speed is None:
-        return cannot_tell(name, "it hardly goes straight with its shaft turning.")
-    share, turning = best_gain(view, rudder_push(view, model, speed))
-    saw = f"at this shaft rate it makes {num(speed, 2)} times the speed of {ship.name}"
-    if share < PROOF_SHARE:
-        return cannot_tell(name, f"{saw}; its turning says too little.")
-    saw += f", and turns {num(turning, 2)} times as strongly at this rudder"
+    name, found = "other_ship", ratios(view)
+    if isinstance(found, str):
+        return cannot_tell(name, found)
+    speed, turning = found
+    ship = view.ship.name if view.ship else ""
+    saw = (
+        f"at this shaft rate it makes {num(speed, 2)} times the speed of {ship}, and turns {num(turning, 2)} "
+        "times as strongly at this rudder"
+    )
     if not out_together(speed, turning):
         return good(name, f"{saw}.")
     return doubtful(
@@ -60,6 +53,33 @@ def other_ship(view: VoyageView) -> Check:
         f"{saw}: no single cause does both. Give the ship file of this ship; or see the units of speed and "
         "shaft.",
     )
+
+
+def ratios(view: VoyageView) -> tuple[float, float] | str:
+    """(s, k); or why they cannot be told."""
+    ship = view.ship
+    if ship is None:
+        return "give --ship to compare how it goes and turns with what its ship would do."
+    if ship.actuators:
+        return "the ship has actuators in the place of one propeller and one rudder."
+    if not view.voyage.has("propeller_rate_rpm", "rudder_angle_deg") or not view.way_on:
+        return "rudder and shaft of a ship that makes way would tell."
+    model = Model.of(ship).without_inputs(set(WEATHER))[0]
+    speed = speed_ratio(view, model)
+    if speed is None:
+        return "it hardly goes straight with its shaft turning."
+    share, turning = best_gain(view, rudder_push(view, model, speed))
+    if share < PROOF_SHARE:
+        return f"at this shaft rate it makes {num(speed, 2)} times the speed; its turning says too little."
+    return speed, turning
+
+
+def as_its_own(view: VoyageView) -> bool:
+    """Whether s and k are both seen, and as a ship in its own file shows them."""
+    found = ratios(view)
+    if isinstance(found, str):
+        return False
+    return abs(log(found[0])) <= log(SPEED_END) and TURNING_ENDS[0] <= found[1] <= TURNING_ENDS[1]
 
 
 def out_together(speed: float, turning: float) -> bool:

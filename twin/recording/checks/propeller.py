@@ -19,14 +19,12 @@ ADVANCE_MISTAKES = (
 def propeller_rate(view: VoyageView) -> Check:
     """Turns against speed: by the advance ratio of a known ship, else by what any propeller does."""
     name = "propeller_rate"
-    n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
-    if not np.isfinite(n).any():
+    if not np.isfinite(view.si("propeller_rate_rpm")).any():
         return cannot_tell(name, view.not_recorded("shaft"))
-    on = thrust_on(view, n)
-    under_way = on & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
-    if np.count_nonzero(under_way) < 10 or view.speed < 0.05 or not view.way_on:
+    driven = under_way(view)
+    if driven is None:
         return cannot_tell(name, "the ship is hardly ever under way with its propeller turning.")
-    rate, way = float(np.median(n[under_way])), float(np.median(speed[under_way]))
+    way, rate = driven
     if view.ship is not None:
         return advance(name, way, rate, float(view.ship.D_P))
     if 60.0 * rate < SLOWEST_RPM:
@@ -43,6 +41,15 @@ def propeller_rate(view: VoyageView) -> Check:
         f"{num(60 * rate, 3)} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
         "closer.",
     )
+
+
+def under_way(view: VoyageView) -> tuple[float, float] | None:
+    """Usual speed [m/s] and turns [1/s] with the shaft driving; None where it hardly ever does."""
+    n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
+    driven = thrust_on(view, n) & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
+    if np.count_nonzero(driven) < 10 or view.speed < 0.05 or not view.way_on:
+        return None
+    return float(np.median(speed[driven])), float(np.median(n[driven]))
 
 
 def thrust_on(view: VoyageView, n: np.ndarray) -> np.ndarray:
@@ -68,15 +75,33 @@ def advance(name: str, way: float, rate: float, diameter: float) -> Check:
     saw = f"advance ratio J = U/(nD) = {num(way, 3)}/({num(rate, 3)} x {num(diameter, 3)}) = {num(j, 3)}"
     if low <= j <= high:
         return good(name, f"{saw}, as a ship under way has it.")
-    for factor, said, other in ADVANCE_MISTAKES:
-        if 0.25 <= j * factor <= 1.4:
-            return wrong(
-                name,
-                f"{saw}; {num(j * factor, 2)} if {said}: that is believed, unless the file is of {other} "
-                "ship.",
-            )
+    mistake = believed(j)
+    if mistake is not None:
+        factor, said, other = mistake
+        return wrong(
+            name,
+            f"{saw}; {num(j * factor, 2)} if {said}: that is believed, unless the file is of {other} ship.",
+        )
     return doubtful(
         name,
         f"{saw}, expected {as_given(low)} to {as_given(high)}: another ship's file, a wrong unit, or a "
         "wrong diameter?",
     )
+
+
+def believed(j: float) -> tuple[float, str, str] | None:
+    """The mistake of unit that explains an advance ratio: its factor on it, its words, the other ship."""
+    return next((m for m in ADVANCE_MISTAKES if 0.25 <= j * m[0] <= 1.4), None)
+
+
+def with_believed_turns(view: VoyageView) -> VoyageView:
+    """The view with the turns that its ship's advance ratio makes believe; the same where none are."""
+    driven = under_way(view)
+    if view.ship is None or driven is None:
+        return view
+    mistake = believed(driven[0] / (driven[1] * float(view.ship.D_P)))
+    if mistake is None:
+        return view
+    columns = dict(view.voyage.columns)
+    columns["propeller_rate_rpm"] = columns["propeller_rate_rpm"] / mistake[0]
+    return VoyageView(view.voyage.with_rows(view.voyage.time_s, columns), view.ship)

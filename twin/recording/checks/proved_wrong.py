@@ -14,7 +14,7 @@ def proved_wrong(voyage: Voyage, checks: Sequence[Check], accept: Collection[str
     return [c for c in checks if c.unusable and c.name not in accepted]
 
 
-def told(wrong: Sequence[Check]) -> str:
+def mistakes_in_words(wrong: Sequence[Check]) -> str:
     """What the checks prove, each by its name."""
     return " ".join(f"{c.name}: {c.text}" for c in wrong)
 
@@ -32,14 +32,15 @@ def refusal(path: str, wrong: Sequence[Check], map_path: str | None = None) -> s
         else f"Have a map proposed (twin import {path} --suggest-map -o map.toml), write that into a map "
         "where the proposed one lacks it, and give it with --map"
     )
-    return f"{path}: not imported. {told(wrong)} {mend}, or import it as it is with {accepting(wrong)}."
+    said, accept = mistakes_in_words(wrong), accepting(wrong)
+    return f"{path}: not imported. {said} {mend}, or import it as it is with {accept}."
 
 
 def refuse(voyage: Voyage, checks: Sequence[Check]) -> None:
     """DataError: a check proves a mistake of a voyage that is to be judged, and nobody accepted it."""
     wrong = proved_wrong(voyage, checks)
     if wrong:
-        raise DataError(f"{voyage.name}: not judged. {told(wrong)} {_ways_out(voyage, wrong)}")
+        raise DataError(f"{voyage.name}: not judged. {mistakes_in_words(wrong)} {_ways_out(voyage, wrong)}")
 
 
 def _ways_out(voyage: Voyage, wrong: Sequence[Check]) -> str:

@@ -76,7 +76,7 @@ def held_turns(view: VoyageView) -> tuple[int, int]:
 
 def best_gain(view: VoyageView, push: np.ndarray | None = None) -> tuple[float, float]:
     """`rudder_gain` over the window length at which the rudder explains most. `push` (N,): how it turns the
-    ship, U^2 delta where it is not given."""
+    ship [rad/s2, or another unit that b then has], U^2 delta where it is not given."""
     r = view.si("yaw_rate_degps")
     r = np.where(view.velocity.real > 0.2 * view.speed, r, np.nan)  # astern the rudder works the other way
     if push is None:
@@ -87,8 +87,8 @@ def best_gain(view: VoyageView, push: np.ndarray | None = None) -> tuple[float, 
 
 
 def rudder_gain(view: VoyageView, push: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
-    """(share of the changes of r that the rudder explains beside r itself, b). `push` (N,), how it turns the
-    ship, and `r` (N,) [rad/s] on the view's even grid."""
+    """(share of the changes of r that the rudder explains beside r itself, b). `push` (N,) [rad/s2 over the
+    unit of b], how it turns the ship, and `r` (N,) [rad/s] on the view's even grid."""
     first, last = view.windows(seconds)
     change, speed = r[last] - r[first], np.abs(view.velocity)
     held = view.summed(push, first, last)
