@@ -11,6 +11,7 @@ from twin.recording.checks import run_checks
 from twin.recording.checks.actuator_response import actuators
 from twin.recording.checks.check_result import doubtful, wrong
 from twin.recording.checks.joint_checks import joint_answers
+from twin.recording.checks.size import ship_size
 from twin.recording.checks.standstill import actuator_zero
 from twin.recording.checks.steps import heading_steps
 from twin.recording.checks.undo import HEADING
@@ -113,3 +114,13 @@ def test_what_hangs_proves_nothing_of_the_wiring():
 
     assert not told(HEADING).unusable and "it rests on a channel that stands still" in told(HEADING).text
     assert told("north_m").unusable
+
+
+def test_a_vessel_of_thrusters_may_turn_on_the_spot(sail):
+    """Test: one voyage, asked with a ship file of rudder and shaft, and with one that has thrusters at its
+    sides. Expected: too tight a turn for the first, nothing against the second."""
+    tanker, columns = load("kvlcc2"), sail(900.0, 7.0, 1.2, 0.05)
+    turns = Voyage("v", columns.pop("time_s"), columns)
+    tug = replace(tanker, actuators=ship_of("thrusters").actuators)
+    assert not ship_size(VoyageView(turns, tanker)).ok
+    assert ship_size(VoyageView(turns, tug)).ok

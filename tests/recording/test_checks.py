@@ -1,13 +1,11 @@
 """Each trap is found when it is there, by its own check; nothing is found when none is there."""
 
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from bench.small_boats import ship_of
 from twin.physics.ship import load
 from twin.recording.checks import CHECKS, run_checks
 from twin.recording.checks.water import factor
@@ -241,15 +239,6 @@ def test_another_ships_file_is_noticed(sail):
     assert answers(columns, tanker)["ship_size"].ok
     assert "too fast" in answers(columns, boat)["ship_size"].text
     assert "no ship turns" in answers(sail(900.0, 7.0, 1.2, 0.05), tanker)["ship_size"].text
-
-
-def test_a_vessel_of_thrusters_may_turn_on_the_spot(sail):
-    """Test: one voyage, asked with a ship file of rudder and shaft, and with one that has thrusters at its
-    sides. Expected: too tight a turn for the first, nothing against the second."""
-    tanker, turns = load("kvlcc2"), sail(900.0, 7.0, 1.2, 0.05)
-    tug = replace(tanker, actuators=ship_of("thrusters").actuators)
-    assert not answers(turns, tanker)["ship_size"].ok
-    assert answers(turns, tug)["ship_size"].ok
 
 
 def test_a_derived_velocity_is_not_evidence(sail):

@@ -8,7 +8,7 @@ from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import at_least_one, several
 from twin.errors import UsageError
 from twin.physics.effect import Effect
-from twin.physics.effects import find
+from twin.physics.effects import find_for
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import losses
@@ -126,7 +126,7 @@ def add(
     names = [effects] if isinstance(effects, str) else list(effects)
     if not names:
         raise UsageError("no effect to add. `twin.diagnose(...).effects` may be empty: look at its sentence.")
-    chosen = [find(name) for name in dict.fromkeys(names)]
+    chosen = [find_for(name, ship) for name in dict.fromkeys(names)]
     used, kept = ([sailed(v, ship) for v in vs] for vs in (at_least_one(voyages), several(held_out)))
     return of_sailed(ship, chosen, used, kept, cross_validated, force, quietly(progress))
 

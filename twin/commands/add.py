@@ -1,5 +1,4 @@
-"""`twin add`: put a named effect into a ship's model, fit it, and prove that what was not fitted is likelier
-with it."""
+"""`twin add`: put an effect into a ship's model, fit it, and prove what was not fitted likelier with it."""
 
 import argparse
 import sys
@@ -10,7 +9,7 @@ from twin.commands import arguments
 from twin.commands.next_command import add_typed
 from twin.commands.verb_output import files, lines_to, progress, with_request
 from twin.errors import ThresholdError
-from twin.physics.effects import find
+from twin.physics.effects import find_for
 from twin.physics.ship import load
 from twin.recording.ship_file_writer import save
 from twin.study.reference.sailed import read_all
@@ -42,7 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship], args.force)
     check_proof(args.held_out, args.cross_validated)
-    effects, ship, paths = [find(n) for n in dict.fromkeys(args.effects)], load(args.ship), args.voyage
+    ship, paths = load(args.ship), args.voyage
+    effects = [find_for(n, ship) for n in dict.fromkeys(args.effects)]
     whole.not_onto(args.output, [*paths, *args.held_out], "one of the voyages")
     every = read_all([*paths, *args.held_out], ship, progress)
     fit, kept, judged = every[: len(paths)], every[len(paths) :], args.held_out or paths

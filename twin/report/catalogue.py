@@ -12,7 +12,7 @@ import numpy  # noqa: F401 (where it is loaded, an installed effect that does no
 
 from twin.num import as_given, percent
 from twin.physics.effect import FORM, Effect, Param
-from twin.physics.effects import OF_ACTUATORS, UNNAMED, catalogue, find, of_ship
+from twin.physics.effects import OF_ACTUATORS, UNNAMED, OfActuator, catalogue, find, of_ship
 from twin.physics.ship import Ship
 from twin.recording.inputs import INPUTS
 
@@ -137,7 +137,8 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     lines += [f"attacks   {_attacks(effect)}"] if effect.lever else []
     lines += [f"found by  twin instruments; {CHANGE}"] if effect.kinematic else []
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
-    add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
+    name = effect.__name__ + ".NAME" * (issubclass(effect, OfActuator) and not effect.actuator)
+    add = f"next: twin add {name} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
     return "\n".join([*lines, "", "next: mend it; no ship file holds it" if effect in UNNAMED else add])
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.small_boats import ship_of
 from twin.cli import main
 from twin.commands import story
 from twin.physics.effects import find
@@ -237,3 +238,18 @@ def test_the_interval_of_an_added_number_is_about_that_of_the_diagnosis():
         pytest.approx(said["high95"], abs=0.02),
     )
     assert extra.value == pytest.approx(said["value"], abs=0.01)
+
+
+def test_an_effect_of_the_one_screw_is_refused_for_a_ship_with_actuators(tmp_path, capsys):
+    """Expected: before any voyage is read, with the effects of its actuators; `twin effects` of a family ends
+    with a command that has a place for the actuator's name."""
+    path = tmp_path / "boat.toml"
+    ship_of("thrusters").save(path)
+    words = ["--ship", str(path), "--voyage", str(tmp_path / "none.mcap"), "-o", str(tmp_path / "b.toml")]
+    assert main(["add", "PropellerWear", *words]) == 5
+    said = capsys.readouterr().err
+    assert "one propeller and rudder" in said and "ThrusterWear.port" in said
+    assert main(["add", "ThrusterWear.port", *words]) == 4
+    capsys.readouterr()
+    assert main(["effects", "ThrusterWear"]) == 0
+    assert "next: twin add ThrusterWear.NAME --ship" in capsys.readouterr().out

@@ -144,6 +144,19 @@ def _installed() -> tuple[dict[str, type[Effect]], dict[str, str]]:
     return good, bad
 
 
+def find_for(name: str, ship: ShipLike) -> type[Effect]:
+    """The same, of this ship. SettingsError: it is of the one propeller and rudder, and the ship has
+    actuators."""
+    effect = find(name)
+    if ship.actuators and effect.one_screw:
+        theirs = [n for n in of_ship(ship) if "." in n]
+        raise SettingsError(
+            f"{name} is of a ship with one propeller and rudder, and this one has actuators. What may be "
+            f"wrong with them: {', '.join(theirs[:8])}{' ...' * (len(theirs) > 8)}."
+        )
+    return effect
+
+
 def find(name: str) -> type[Effect]:
     """The effect of that name; a built-in one is found without looking at what is installed.
     SettingsError: there is none that can be used."""

@@ -26,7 +26,7 @@ OF_MOTION = (
     "wind",
     "other_ship",
 )
-STILL = "a channel that stands still"
+FROZEN_CHANNEL = "a channel that stands still"
 MOVES = (HEADING, "surge_velocity_mps", "yaw_rate_degps")  # what actuators are seen by
 # which relations a check's proof rests on beside its own: where one of them is broken it proves nothing
 WITNESSES: dict[str, tuple[str, ...]] = {
@@ -37,7 +37,7 @@ WITNESSES: dict[str, tuple[str, ...]] = {
     "speed_log": ("place", "course"),
     "wind": ("turning", "course"),
     "rudder_unit": ("turning",),
-    "actuators": ("turning", "place", STILL),
+    "actuators": ("turning", "place", FROZEN_CHANNEL),
 }
 Checks = Sequence[Callable[[VoyageView], Check]]
 
@@ -53,7 +53,7 @@ def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
     answers |= of_this_ship(answers, without)
     broken = {name for name, off in offs(coarse(without)).items() if off is not None and off > BROKEN}
     if any(f"{channel} stays" in answers["frozen"].text for channel in MOVES):
-        broken.add(STILL)
+        broken.add(FROZEN_CHANNEL)
     return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
 
 
@@ -102,10 +102,10 @@ def not_proved_beside(answer: Check, broken: set[str]) -> Check:
     doubted = [name for name in WITNESSES.get(answer.name, ()) if name in broken]
     if not answer.unusable or not doubted:
         return answer
-    others = [name for name in doubted if name != STILL]
+    others = [name for name in doubted if name != FROZEN_CHANNEL]
     why = (
         f"{' and '.join(others)} of the same channels do not agree either"
         if others
-        else f"it rests on {STILL}"
+        else f"it rests on {FROZEN_CHANNEL}"
     )
     return doubtful(answer.name, f"{answer.text} Not proved: {why}; see the other checks.")

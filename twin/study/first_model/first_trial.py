@@ -6,6 +6,7 @@ from typing import Any
 
 from twin.num import as_given, num, percent
 from twin.physics.model import Model
+from twin.physics.particulars import ONE_SCREW
 from twin.physics.ship import PARTICULARS, Ship
 from twin.study.first_model import regressions as reg
 from twin.study.first_model.first_estimate import Given
@@ -20,7 +21,6 @@ IMO = (  # MSC.137(76): figure, what it is called, its unit, its limit
     ("tactical_diameter_L", "tactical diameter", "L", 5.0),
     ("overshoot_20_20_deg", "first overshoot of the 20/20 zigzag", "deg", 25.0),
 )
-OF_ONE_SCREW = ("D_P", "A_R")  # an actuator has its own, and these stand for nothing
 FULL_C_B = 0.7  # block coefficient from which ships often do not go straight by themselves
 
 
@@ -86,7 +86,7 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     lines = [f"{ship.name}: a first model from its main particulars", ""]
     for f in PARTICULARS:
         source = notes[f.name]["source"]
-        idle = bool(ship.actuators) and f.name in OF_ONE_SCREW
+        idle = bool(ship.actuators) and f.name in ONE_SCREW
         if idle and source != "given":
             continue
         mark = (
