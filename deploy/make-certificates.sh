@@ -10,6 +10,7 @@ days="${DAYS:-825}"
 names=""
 for address in "$@"; do
     case "$address" in
+        *:*) names="$names,IP:$address" ;;  # IPv6
         *[!0-9.]*) names="$names,DNS:$address" ;;
         *) names="$names,IP:$address" ;;
     esac

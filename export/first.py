@@ -26,6 +26,7 @@ from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.live.log.log_rows import read_rows
 from twin.live.observer.dynamics import KnownDynamics
+from twin.live.signals.channels import BY_NAME
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Force, Situation
@@ -85,7 +86,9 @@ def read(path: Path, ship: Ship) -> Run:
     """A voyage on the grid, and the force its core leaves over."""
     time_s, columns = read_rows(path)
     grid = np.arange(time_s[0], time_s[-1] - 1.0, STEP_S)
-    si = {name: _on(grid, time_s, columns[column]) for name, column in COLUMNS.items()}
+    si = {
+        name: _on(grid, time_s, columns[column], BY_NAME[column].wraps) for name, column in COLUMNS.items()
+    }
     psi, r, delta = (np.radians(si[name]) for name in ("psi", "r", "delta"))
     s = Situation(0.0, 0.0, psi, si["u"], si["v"], r, delta=delta, n=si["n"] / 60.0)
     known = KnownDynamics(Model.of(ship))
@@ -146,12 +149,13 @@ def _window(run: Run, rng: np.random.Generator, steps: int = 4 * KERNEL) -> tupl
     return run.zeta[start : start + steps], run.d[start : start + steps]
 
 
-def _on(grid: np.ndarray, time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Means of what was measured around each point of the grid; headings are unwrapped first."""
+def _on(grid: np.ndarray, time_s: np.ndarray, values: np.ndarray, wraps: float) -> np.ndarray:
+    """Means of what was measured around each point of the grid; what `wraps` is unwrapped first, and nothing
+    else: a boat's shaft goes from 0 to 3000 rpm at once."""
     good = np.isfinite(values)
     t, x = time_s[good], values[good]
-    if np.ptp(x) > 180.0:
-        x = np.unwrap(x, period=360.0)
+    if wraps:
+        x = np.unwrap(x, period=wraps)
     total = np.concatenate([[0.0], np.cumsum(x)])
     first, last = np.searchsorted(t, grid - 0.5 * STEP_S), np.searchsorted(t, grid + 0.5 * STEP_S)
     many = last > first

@@ -2,7 +2,6 @@
 
 from twin.api.json_key import CLI, ESTIMATE, TYPICAL_FORCE, JsonKey, under, when
 
-DIAGNOSED = "it was judged"
 NAMED = "a cause is named"
 WEIGHED = "a cause is likely"
 DATED = (

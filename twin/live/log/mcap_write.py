@@ -71,11 +71,6 @@ class McapWriter:
         self._schemas: dict[int, bytes] = {}
 
     @property
-    def pending(self) -> int:
-        """Messages of the chunk in progress."""
-        return self._chunk.messages
-
-    @property
     def channels(self) -> int:
         """Topics met so far."""
         return len(self._channel_ids)

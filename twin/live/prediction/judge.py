@@ -19,8 +19,7 @@ PATIENCE_S = 4.0  # a sample that comes later than that is not waited for
 
 class Foretold(NamedTuple):
     """A prediction that waits for its time: eta and nu said at `said_s` for `due_s`, from the helm as it was
-    at `start_s`; what was known then, and the half widths promised with it (along, across [m], heading
-    [rad]; () where none were)."""
+    at `start_s`; what was known then, and the region said with it (None: none was)."""
 
     start_s: float
     said_s: float

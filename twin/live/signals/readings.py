@@ -7,6 +7,8 @@ speak with the same codes, so a channel's quality reads the same in the log, on 
 from enum import IntEnum
 from typing import NamedTuple
 
+from twin.live.signals.geodesy import MAX_DISTANCE_M, MAX_LATITUDE_DEG
+
 
 class Quality(IntEnum):
     """One code for each answer to "may this sample be used?"; the number is what the log holds."""
@@ -51,7 +53,8 @@ WORDS: dict[Quality, str] = {
     Quality.GARBAGE: "cannot be decoded",
     Quality.CONFLICT: "two sources publish it",
     Quality.UNKNOWN_KEY: "a key the table of topics does not have",
-    Quality.OUTSIDE_AREA: "a position too far from the datum, or too near a pole, for a flat chart",
+    Quality.OUTSIDE_AREA: f"more than {MAX_DISTANCE_M / 1e3:.0f} km from the voyage's datum (start the twin "
+    f"again there), or beyond {MAX_LATITUDE_DEG} deg of latitude",
     Quality.NOT_GIVEN: "this voyage does not have it",
     Quality.UNCONFIRMED: "the first of its kind; a second must agree with it",
 }
