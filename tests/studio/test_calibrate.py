@@ -27,11 +27,11 @@ AT_WORK = "[...document.querySelectorAll('#work .job')].find((e) => e.dataset.jo
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory):
-    """Two reference voyages and one to measure on, 10 min each, and the published tanker."""
+    """Two reference voyages and one to measure on, 7.5 min each, and the published tanker."""
     folder = tmp_path_factory.mktemp("calibrate") / "voyages"
     folder.mkdir()
     shutil.copyfile(Path(twin.__file__).parent / "ships" / "kvlcc2.toml", folder / "kvlcc2.toml")
-    sailed = simulate([SeaCase("kvlcc2", m, seed=960 + i, duration_s=600.0) for i, m in enumerate(TAGS)])
+    sailed = simulate([SeaCase("kvlcc2", m, seed=960 + i, duration_s=450.0) for i, m in enumerate(TAGS)])
     project = Project(folder)
     for (name, tag), r in zip(TAGS.items(), sailed, strict=True):
         write_voyage(recorded(name, r.columns, every=10), folder / f"{name}.mcap")

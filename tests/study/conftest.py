@@ -17,8 +17,8 @@ from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
+from twin.study.diagnosis import effect_diagnosis
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.diagnosis.search import search
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
@@ -90,10 +90,22 @@ def searched(case_of):
 
 
 @pytest.fixture(scope="session")
-def diagnosed(tanker, voyages):
-    """What is said of one of `voyages`, by its name: asked once, and a copy for each who reads it."""
-    told = cache(lambda name: diagnose([voyages[name]], tanker).result)
-    return lambda name: deepcopy(told(name))
+def asked(tanker, voyages, case_of):
+    """What is said of one of `voyages`, by its name: (result, progress), asked once, of the case of all."""
+
+    def ask(name):
+        said = []
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(effect_diagnosis, "assemble", lambda *_: case_of(name))
+            return effect_diagnosis.diagnose([voyages[name]], tanker, progress=said.append).result, said
+
+    return cache(ask)
+
+
+@pytest.fixture(scope="session")
+def diagnosed(asked):
+    """What is said of one of `voyages`, by its name: a copy for each who reads it."""
+    return lambda name: deepcopy(asked(name)[0])
 
 
 DEG = 180.0 / np.pi

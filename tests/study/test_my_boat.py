@@ -1,16 +1,19 @@
 """The tutorial "my boat": every command as it stands, in order; on a real boat's logs where they are at hand,
 else on simulated ones."""
 
+import io
 import json
 import os
 import re
 import shlex
 import subprocess
 import sys
+from contextlib import chdir, redirect_stderr
 from pathlib import Path
 
 import pytest
 
+from twin import cli
 from twin.physics.ship import load
 
 ROOT = Path(__file__).parents[2]
@@ -29,6 +32,16 @@ def steps():
             yield from ((None, line) for line in block.splitlines())
 
 
+def done(program, words, folder):
+    """(exit code, what it said) of a command in that folder."""
+    if program == "twin":
+        with chdir(folder), redirect_stderr(io.StringIO()) as said:
+            return cli.main(words), said.getvalue()
+    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    ended = subprocess.run([sys.executable, *words], cwd=folder, capture_output=True, text=True, env=env)
+    return ended.returncode, ended.stderr
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Where the whole page was done."""
@@ -45,17 +58,10 @@ def folder(tmp_path_factory):
             rows = (REAL / f"fixed_00000{RUNS[run.removesuffix('.csv')]}.csv").read_text().splitlines(True)
             (path / run).write_text("".join(rows[: ROWS + 1]))
             continue
-        words = words if program == "python" else ["-m", "twin.cli", *words]
-        done = subprocess.run(
-            [sys.executable, *words],
-            cwd=path,
-            capture_output=True,
-            text=True,
-            env=os.environ | {"PYTHONPATH": str(ROOT)},
-        )
-        assert done.returncode == int(expected or 0), f"{command}\n{done.stderr[-800:]}"
+        code, said = done(program, words, path)
+        assert code == int(expected or 0), f"{command}\n{said[-800:]}"
         if expected:
-            (path / "refused.txt").write_text(done.stderr)
+            (path / "refused.txt").write_text(said)
     return path
 
 

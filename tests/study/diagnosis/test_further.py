@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 
-import twin
 from tests.study.conftest import voyage
 from twin.physics.effects import find
 from twin.study.diagnosis import further, sentences
@@ -63,10 +62,9 @@ def test_the_facts_are_those_of_the_whole(whole, half):
     assert facts.left.error < facts.error_nothing
 
 
-def test_a_single_cause_stays_single_and_nothing_is_asked_twice(tanker, voyages):
-    said: list[str] = []
-    found = twin.diagnose(tanker, voyages["HeadingBias"], progress=said.append)
-    assert (found.effects, found.data["further"]) == (["HeadingBias"], [])
+def test_a_single_cause_stays_single_and_nothing_is_asked_twice(asked):
+    found, said = asked("HeadingBias")
+    assert (found["missing"], found["further"]) == (["HeadingBias"], [])
     assert said and not [line for line in said if line.startswith("asking again")]
 
 

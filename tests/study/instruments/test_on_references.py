@@ -22,10 +22,17 @@ from twin.study.instruments.on_references import (
 U, V = "surge_velocity_mps", "sway_velocity_mps"
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def days(sail):
-    """Columns of three reference voyages, twelve minutes of zigzags each, twice a second."""
+    """Columns of three reference voyages, twelve minutes of zigzags each, twice a second; nobody writes into
+    them."""
     return [{name: sail(720.0, seed=seed)[name][::EVERY] for name in KEPT} for seed in (3, 4, 5)]
+
+
+@pytest.fixture(scope="module")
+def three_seconds(days):
+    """What the tanker's references establish with a receiver that smooths over three seconds."""
+    return own_instruments([sailed(smoothed(d, 3.0)) for d in days], load("kvlcc2"))
 
 
 def smoothed(columns, time_s):
@@ -50,8 +57,8 @@ def sailed(columns):
     return SimpleNamespace(voyage=made, track=SimpleNamespace(name=made.name, t=made.time_s - made.time_s[0]))
 
 
-def test_a_receiver_that_smooths_on_every_reference_belongs_to_the_ship(days):
-    found = own_instruments([sailed(smoothed(d, 3.0)) for d in days], load("kvlcc2"))
+def test_a_receiver_that_smooths_on_every_reference_belongs_to_the_ship(three_seconds):
+    found = three_seconds
     effects = {type(e).__name__: e for e in found.ship.effects}
     assert set(found.written) == {"ReceiverSmoothing"} and set(effects) >= {"ReceiverSmoothing"}
     assert effects["ReceiverSmoothing"].time == pytest.approx(3.0, abs=0.3)
@@ -80,9 +87,8 @@ def test_fewer_than_three_references_establish_nothing(days, voyages):
     assert "smoothing" in found.record.faults and established(found) == []
 
 
-def test_what_the_ship_file_has_already_is_refined_and_never_there_twice(days):
-    once = own_instruments([sailed(smoothed(d, 3.0)) for d in days], load("kvlcc2")).ship
-    again = own_instruments([sailed(smoothed(d, 2.0)) for d in days], once).ship
+def test_what_the_ship_file_has_already_is_refined_and_never_there_twice(days, three_seconds):
+    again = own_instruments([sailed(smoothed(d, 2.0)) for d in days], three_seconds.ship).ship
     (only,) = (e for e in again.effects if type(e).__name__ == "ReceiverSmoothing")
     assert only.time == pytest.approx(2.0, abs=0.3)
 

@@ -182,8 +182,8 @@ def lower_inverse(L: np.ndarray) -> np.ndarray:
     one = _diagonal(out)
     np.divide(1.0, _diagonal(L), out=one)
     # blocks of one by one are numbers: all pairs of them at once
-    below = _diagonal(L[..., 1:, :-1])[..., ::2]
-    np.multiply(-(one[..., 1::2] * below), one[..., : n - 1 : 2], out=_diagonal(out[..., 1:, :-1])[..., ::2])
+    under = _diagonal(L[..., 1:, :-1])[..., ::2]
+    np.multiply(-(one[..., 1::2] * under), one[..., : n - 1 : 2], out=_diagonal(out[..., 1:, :-1])[..., ::2])
     size = 2
     while size < n:
         for a in range(0, n - size, 2 * size):
@@ -194,7 +194,7 @@ def lower_inverse(L: np.ndarray) -> np.ndarray:
 
 
 def _diagonal(M: np.ndarray) -> np.ndarray:
-    """(..., n) the diagonals of (..., n, n), to be written to: a view, made in a tenth of an einsum's time."""
+    """(..., n) the diagonals of (..., n, n), to be written to: a view."""
     out = M.diagonal(0, -2, -1)
     out.flags.writeable = True
     return out
