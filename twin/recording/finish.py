@@ -101,8 +101,8 @@ def require(raw: Raw, controls: bool = True) -> None:
         kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
             f"{raw.path}: {kind}needs {needs}. {'; '.join(said)}{'. ' if said else ''}Add the column, or say "
-            f'in a map which one it is (twin import --map; {missing[0].split()[0]} = "COLUMN" under [columns] '
-            f"leaves the others as they are; --suggest-map writes one).{steady}"
+            f"in a map which one it is (twin import --map; under [columns] {missing[0].split()[0]} = "
+            f'"COLUMN" leaves the others as they are; --suggest-map writes one).{steady}'
             + " What is judged without the controls is imported with "
             "--without-controls." * (set(missing) <= set(CONTROLS))
         )
