@@ -153,10 +153,9 @@ def whose_page(answers: Sequence[WhoseAnswer]) -> str:
     lines = bench_output.begun("Whose voyage is this?", __doc__, *columns)
     own = [a for a in answers if a.own]
     for group in dict.fromkeys(a.group for a in own):
-        for words, some in (("healthy", False), ("something hidden", True)):
-            lines.append(
-                _row(f"{group}, {words}", [a for a in own if a.group == group and bool(a.hidden) == some])
-            )
+        for words, hidden in (("healthy", False), ("something hidden", True)):
+            of = [a for a in own if a.group == group and bool(a.hidden) == hidden]
+            lines.append(_row(f"{group}, {words}", of))
     lines += [
         "",
         "Beside the file of another ship:",
