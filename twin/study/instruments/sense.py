@@ -11,7 +11,9 @@ Frames: north-east; the ship's axes ahead and to starboard. s = t - latency; R t
     rate      d psi/dt (s) + bias
     log       (1 + k)(u_r cos m + v_r sin m) + b,
     log aside (1 + k)(v_r cos m - u_r sin m);   (u_r, v_r) = R^T (V - stream)
-    wind      (1 + k_w) turned by the vane of R^T (V - air)
+    wind      turned by the vane: R^T ((1 + k_w) V - W), W = (1 + k_w) air, the wind as this anemometer would
+              show it at rest. W is the state: were it the air, a larger k_w would make its steps smaller and
+              be preferred for that alone
     drift     0 = v_r - d_1 r - d_2 dr/dt - d_3 r |r| / r_0 - leeway V_a v_a / U
 """
 
@@ -170,13 +172,13 @@ def wind(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     t, n = p.by["wind"].t, p.by["wind"].t.size
     assert p.wind is not None
     here, slow = at(p, t), p.wind.weights(t)
-    air = p.wind.value(p.x[p.at[2]], slow)
-    u, v = here.body(here.v[:, 0] - air[:, 0], here.v[:, 1] - air[:, 1])
     k, c, s = 1.0 + get(theta, "wind_scale"), np.cos(get(theta, "vane")), np.sin(get(theta, "vane"))
-    for first, a, b in ((0, k * c, -k * s), (n, k * s, k * c)) if rows else ():
+    shown = p.wind.value(p.x[p.at[2]], slow)  # k air
+    u, v = here.body(k * here.v[:, 0] - shown[:, 0], k * here.v[:, 1] - shown[:, 1])
+    for first, a, b in ((0, c, -s), (n, s, c)) if rows else ():
         assert rows is not None
         for j, d in enumerate((a * here.c - b * here.s, a * here.s + b * here.c)):
-            rows.add(first, p.at[0][:, j], here.weights(1), d)
+            rows.add(first, p.at[0][:, j], here.weights(1), k * d)
             rows.add(first, p.at[2][:, j], slow, -d)
         rows.add(first, p.at[0][:, 2], here.weights(0), a * v - b * u)
-    return np.concatenate([k * (u * c - v * s), k * (u * s + v * c)])
+    return np.concatenate([u * c - v * s, u * s + v * c])
