@@ -86,9 +86,7 @@ def read(path: Path, ship: Ship) -> Run:
     """A voyage on the grid, and the force its core leaves over."""
     time_s, columns = read_rows(path)
     grid = np.arange(time_s[0], time_s[-1] - 1.0, STEP_S)
-    si = {
-        name: _on(grid, time_s, columns[column], BY_NAME[column].wraps) for name, column in COLUMNS.items()
-    }
+    si = {name: _on(grid, time_s, columns[column], BY_NAME[column].wraps) for name, column in COLUMNS.items()}
     psi, r, delta = (np.radians(si[name]) for name in ("psi", "r", "delta"))
     s = Situation(0.0, 0.0, psi, si["u"], si["v"], r, delta=delta, n=si["n"] / 60.0)
     known = KnownDynamics(Model.of(ship))
