@@ -19,7 +19,6 @@ from bench.paper import tuned_ekf as paper_ekf  # noqa: E402
 from bench.paper.lab import course, free, judge  # noqa: E402
 from bench.paper.nominal_ship import OFF, nominal  # noqa: E402
 from bench.paper.page import page  # noqa: E402
-from bench.tick.timing import hot_us  # noqa: E402
 from export.data import split  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 
@@ -164,9 +163,7 @@ def tiny(tmp_path_factory):
         5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5, 320.0, (110.0, 150.0, 190.0)
     )
     folder = tmp_path_factory.mktemp("tiny")
-    with pytest.MonkeyPatch.context() as patch:  # Fig. 6 from one call of each: no test reads its times
-        patch.setattr("bench.paper.figures.hot_us", lambda once, repeats, warm_up=0: hot_us(once, 1, 0))
-        return paper.reproduce(plan, folder / "work", True, folder / "figures"), folder
+    return paper.reproduce(plan, folder / "work", True, folder / "figures"), folder
 
 
 def test_every_table_is_made_and_keeps_the_contract(tiny):
