@@ -60,8 +60,8 @@ def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
 def of_this_ship(answers: dict[str, Check], view: VoyageView) -> dict[str, Check]:
     """`propeller_rate` and `other_ship` beside each other: by a ship's propeller a unit of the shaft is
     proved only where the voyage, so mended, is seen to be that ship's; then it is no other ship's either."""
-    answer = answers["propeller_rate"]
-    if not answer.unusable or view.ship is None:
+    answer = answers.get("propeller_rate")
+    if answer is None or not answer.unusable or view.ship is None:
         return {}
     mended = with_believed_turns(view)
     if as_its_own(mended):
