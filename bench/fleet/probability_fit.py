@@ -15,7 +15,7 @@ from scipy.optimize import minimize
 from bench.fleet.answer_score import BY_NOW, Row, causes, posterior, share
 from bench.fleet.decided_again import decided_again
 from bench.fleet.fleet_page import lines
-from twin.study.diagnosis.calibrated_probability import FACTS, log_odds
+from twin.study.diagnosis.calibrated_probability import FACTS, log_odds, unnamed
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts
 
@@ -62,7 +62,8 @@ def _of_causes_beside(row: Row) -> list[FactsAndTruth]:
 
 
 def _of_nothing(row: Row) -> list[FactsAndTruth]:
-    return [([log_odds(row["read"].nothing)], not causes(list(row["hidden"])))]
+    f: Facts = row["read"]
+    return [([log_odds(f.nothing), unnamed(f, decided_again(row, f))], not causes(list(row["hidden"])))]
 
 
 def _of_unknown(row: Row) -> list[FactsAndTruth]:
@@ -84,7 +85,9 @@ QUESTIONS = {  # weights in calibrated_probability.py -> what they answer
     "OF_CAUSE_BESIDE": ProbabilityModel(
         "a cause beside the explanation is there", ("log_odds",), _of_causes_beside
     ),
-    "OF_NOTHING": ProbabilityModel("no cause of ship and instruments is there", ("log_odds",), _of_nothing),
+    "OF_NOTHING": ProbabilityModel(
+        "no cause of ship and instruments is there", ("log_odds", "unnamed"), _of_nothing
+    ),
     "OF_UNKNOWN": ProbabilityModel("what is there has no name", ("log_odds", "verdict"), _of_unknown),
 }
 

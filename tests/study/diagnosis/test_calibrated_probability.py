@@ -45,7 +45,17 @@ def test_a_cause_that_the_explanation_does_without_is_told_by_its_posterior_alon
 def test_nothing_is_told_beyond_what_so_many_answers_can_show():
     f = facts(cause(probability=1.0, significance=1e9))
     low, high = told.PROBABILITY_LIMITS
-    assert said(f, 1.0) <= high and told.of_nothing(1.0) <= high and told.of_nothing(0.0) >= low
+    d = decide(f)
+    assert said(f, 1.0) <= high and told.of_nothing(1.0, f, d) <= high and told.of_nothing(0.0, f, d) >= low
+
+
+def test_nothing_is_less_likely_where_a_cause_is_named():
+    """Test: the same posterior beside a named cause, and beside one that is not. Expected: by hand, log odds
+    of a half are none: 1 / (1 + e^1.18) = 0.235, and 1 / (1 + e^-0.25) = 0.562."""
+    f = facts(cause(probability=0.97, significance=20.0))
+    d = decide(f)
+    assert d.missing and told.of_nothing(0.5, f, d) == pytest.approx(0.235, abs=1e-3)
+    assert told.of_nothing(0.5, f, replace(d, missing=())) == pytest.approx(0.562, abs=1e-3)
 
 
 def test_something_without_a_name_is_likelier_where_the_verdict_says_so():

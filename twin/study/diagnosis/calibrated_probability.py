@@ -49,7 +49,7 @@ OF_CAUSE = {  # of the explanation
     "of_known_form": 1.95,
 }
 OF_CAUSE_BESIDE = {"constant": -1.33, "log_odds": 1.09}  # the explanation does without it
-OF_NOTHING = {"constant": 0.06, "log_odds": 1.21}  # no cause of ship and instruments is there
+OF_NOTHING = {"constant": -1.18, "log_odds": 0.92, "unnamed": 1.43}  # no cause of ship and instruments
 OF_UNKNOWN = {"constant": -0.41, "log_odds": 0.70, "verdict": 0.75}  # what is there has no name
 
 
@@ -64,9 +64,14 @@ def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
     return _share(OF_CAUSE, **{name: fact(f, cause, d) for name, fact in FACTS.items()})
 
 
-def of_nothing(posterior: float) -> float:
+def of_nothing(posterior: float, f: Facts, d: Decision) -> float:
     """How often no cause was there where that has this posterior probability. [1]"""
-    return _share(OF_NOTHING, log_odds=log_odds(posterior))
+    return _share(OF_NOTHING, log_odds=log_odds(posterior), unnamed=unnamed(f, d))
+
+
+def unnamed(f: Facts, d: Decision) -> float:
+    """1 where the rules name no cause of ship and instruments, else 0."""
+    return float(not any(c.effect in d.missing for c in f.causes))
 
 
 def of_unknown(f: Facts, d: Decision) -> float:

@@ -65,7 +65,7 @@ def diagnose(
     )
     case, weighed, found, w = told.case, told.weighed, told.found, told.weights
     considered, decision, facts = told.considered, told.decision, told.considered.facts
-    nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing)
+    nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing, facts, decision)
     p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
     likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST_PROBABILITY][:SHOWN]
     likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
