@@ -154,11 +154,19 @@ def test_the_verb_writes_json_and_a_ship_file_that_loads(healthy, write_csv, tmp
 
 
 def test_of_two_compasses_on_one_bus_each_can_be_asked(tmp_path, capsys):
-    """Test: HE is right, GP comes 3 s late. Expected: the late one is named, the other one not."""
+    """Test: HE is right but for its noise, GP comes 3 s late. Expected: the late one is named, the other one
+    not."""
     m, path = motion(600), tmp_path / "bridge.log"
+    noisy_psi = m["psi"] + np.random.default_rng(5).normal(0.0, 0.1, m["psi"].size)
     late_psi = np.interp(m["t"] - 3.0, m["t"], m["psi"])
-    second = [sentence(f"GPHDT,{psi:.2f},T") for psi in late_psi]
-    path.write_text("".join(f"{s}\n" for i in range(600) for s in [*nmea_lines(m, i), second[i]]))
+    headings = [[f"HEHDT,{a:.2f},T", f"GPHDT,{b:.2f},T"] for a, b in zip(noisy_psi, late_psi, strict=True)]
+    path.write_text(
+        "".join(
+            f"{s}\n"
+            for i in range(600)
+            for s in [s for s in nmea_lines(m, i) if "HDT" not in s] + [sentence(h) for h in headings[i]]
+        )
+    )
     seen = {}
     for name in ("HE", "GP"):
         source, answer = f"heading_true_north_deg={name}", tmp_path / f"{name}.json"
