@@ -21,7 +21,7 @@ LENGTHS = 40.0  # that a voyage lasts
 
 
 def coaster():
-    """A ship of 110 m, of the particulars that her owner has."""
+    """A ship of 110 m, of the particulars that its owner has."""
     known = {"block_coefficient": 0.72, "service_speed_mps": 6.5, "shaft_speed_rpm": 150.0}
     return twin.first_model("coaster", 110.0, 17.0, 6.2, **known, propeller_diameter_m=3.5).ship
 

@@ -30,8 +30,8 @@ OUT_OF_SPEED, OUT_OF_TURNING, OUT_TOGETHER = 0.5, 0.5, 2.25  # of a, of b, of bo
 # of the measured speed, where the file's is looked for; the least is taken at which it accelerates no more
 TRIED = np.geomspace(0.01, 100.0, 321)
 LEAST_TURNING = 1e-4  # of k: a ship that turns the other way is as far out
-FEWEST_WINDOWS = 5
-WINDOW_STEPS = 10
+FEWEST_WINDOWS = 5  # under way with the shaft turning; fewer say nothing
+WINDOW_STEPS = 10  # of the grid, that a window lasts
 STRAIGHTEST = 0.3  # share of the windows that turn least
 
 
