@@ -23,7 +23,8 @@ from twin.live.signals.config import Settings
 
 def ticks(log: str | Path, settings: Settings, seconds: float) -> Iterator[Loop]:
     """The loop that the service builds, after each tick of the first seconds of a log."""
-    played, ears = PlayedLog(log, settings["loop.rate_hz"]), Played([])
+    played = PlayedLog(log, settings["loop.rate_hz"])
+    ears = Played([], played.decoder)
     loop = loop_of(
         settings, ears, Outbox(Publisher(), settings["bus.base"], settings["bus.entity"]), patience_s=None
     )
@@ -32,7 +33,7 @@ def ticks(log: str | Path, settings: Settings, seconds: float) -> Iterator[Loop]
         begin_s = batch.time_s if begin_s is None else begin_s
         if batch.time_s - begin_s > seconds:
             return
-        ears.next, ears.datum = batch.results, played.decoder.datum
+        ears.next = batch.results
         loop.tick(Instant(number, batch.time_s, max(batch.wall_s, 0.0)))
         yield loop
 

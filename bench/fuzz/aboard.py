@@ -21,6 +21,7 @@ from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.signals.channels import BY_NAME
+from twin.live.signals.chart import Chart
 from twin.live.signals.config import Settings
 from twin.live.signals.geodesy import datum
 from twin.live.signals.readings import Reading
@@ -44,7 +45,7 @@ class MessageTarget:
         self.keys = [topics.key("twin", "ship", t.subject, "x") for t in SUBJECTS]
 
     def one(self, data: bytes) -> None:
-        take, decoder = Take(data), Decoder(datum(57.7, 11.9))
+        take, decoder = Take(data), Decoder(Chart(datum(57.7, 11.9)))
         while take:
             key = take.one_of(self.keys) if take.byte() else take.bytes(60).decode("utf-8", "replace")
             payload = take.bytes(take.byte())
@@ -89,7 +90,7 @@ class FuzzedVoyage:
         self.sailed, self.loop, self.k = target.sailed, loop, k
         self.ticks = self.inside = 0
         self.wall, self.silent, self.off, self.behind = WALL, set[str](), dict[str, float](), 0.0
-        self.decoder, self.extra, self.honest = Decoder(datum(57.7, 11.9)), list[Result](), True
+        self.decoder, self.extra, self.honest = Decoder(Chart(datum(57.7, 11.9))), list[Result](), True
         self.made: list[Result] = []
 
     @property

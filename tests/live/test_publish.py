@@ -9,6 +9,7 @@ from twin.live.keelson.bus import MemoryBus
 from twin.live.keelson.topics import OUTPUTS, address
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher, border_sigma, border_state
+from twin.live.signals.chart import Chart
 from twin.live.signals.geodesy import datum
 
 
@@ -30,13 +31,13 @@ def spoken(make_bridge, seconds, at=None):
     bridge = make_bridge()
     bus = MemoryBus()
     bridge.loop.voice = Outbox(bridge.loop.publisher, "base", "alma", bus)
-    bridge.ears.datum = at
+    bridge.ears.decoder.chart = at
     bridge.run(seconds)
     return bridge, [(address(key), messages.unwrap(data)[1]) for key, data in bus.sent]
 
 
 def test_every_subject_is_said_as_often_as_the_table_says(make_bridge):
-    _, sent = spoken(make_bridge, 5.0, datum(57.6, 11.6))
+    _, sent = spoken(make_bridge, 5.0, Chart(datum(57.6, 11.6)))
     count = {
         (o.subject, o.source): sum(a.subject == o.subject and a.source == o.source for a, _ in sent)
         for o in OUTPUTS

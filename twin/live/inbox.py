@@ -6,7 +6,7 @@ from twin.live.clock import Instant
 from twin.live.keelson.bus import Bus
 from twin.live.keelson.decode import Decoder, Result
 from twin.live.keelson.seats import Seats
-from twin.live.signals.geodesy import Datum
+from twin.live.signals.chart import Chart
 from twin.live.signals.readings import Quality, Rejected
 
 Log = Callable[[str, str, bytes, int], None]  # topic, type name, payload, time [ns since 1970]
@@ -20,20 +20,15 @@ class Inbox:
         self,
         bus: Bus,
         log: Log | None = None,
-        datum: Datum | None = None,
+        chart: Chart | None = None,
         sources: Mapping[str, str] | None = None,
     ):
         self.bus, self.log, self.seats = bus, log, Seats(sources)
-        self.decoder = Decoder(datum, ())
+        self.decoder = Decoder(chart, ())
 
     def listen_to(self, actuators: Collection[str]) -> None:
         """Hear these channels of the ship's actuators, too."""
         self.decoder.actuators = self.seats.actuators = frozenset(actuators)
-
-    @property
-    def datum(self) -> Datum | None:
-        """Where north and east are counted from, once it is known."""
-        return self.decoder.datum
 
     def read(self, instant: Instant) -> list[Result]:
         """Never waits."""
@@ -54,10 +49,11 @@ class Played:
     """Ears for a replay or a test: results made beforehand, a list for each tick, or put into `next` one
     by one."""
 
-    def __init__(self, ticks: Iterable[list[Result]], datum: Datum | None = None):
+    def __init__(self, ticks: Iterable[list[Result]], decoder: Decoder | None = None):
+        """decoder: of the log that the results come from, whose chart the loop moves along."""
         self._ticks = iter(ticks)
         self.next: list[Result] | None = None
-        self.datum = datum
+        self.decoder = decoder or Decoder()
 
     def read(self, instant: Instant) -> list[Result]:
         """What came in before this tick of the log."""

@@ -72,7 +72,7 @@ def replay(
     batches = played.batches()
     with ExitStack() as stack:
         file = stack.enter_context(LogFile(output, played.classes)) if output else None
-        ears = Played([])
+        ears = Played([], played.decoder)
         voice = Outbox(
             Publisher(), settings["bus.base"], settings["bus.entity"], bus, file.add if file else None
         )
@@ -108,7 +108,6 @@ def _sailed(
             for message in batch.raw:
                 file.add(message.topic, message.type_name, message.data, round(instant.wall_s * 1e9))
         ears.next = batch.results
-        ears.datum = played.decoder.datum
         tick = loop.tick(instant)
         foresight.look(instant.time_s)
         kept.look(instant.time_s)

@@ -13,11 +13,12 @@ from twin.live.gates.faults import KnownFaults
 from twin.live.gates.lacking import CorrectedTick
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import CONTROLS, INVALID, NO_HEADING, Guard
-from twin.live.keelson.decode import Result
+from twin.live.keelson.decode import Decoder, Result
 from twin.live.learning.filtered_regression import Three
 from twin.live.learning.learned_force import LearnedForce
 from twin.live.observer.controls import actuator_channels
 from twin.live.observer.dynamics import Dynamics
+from twin.live.observer.estimate import Estimate
 from twin.live.observer.observer import Observer
 from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
@@ -25,8 +26,7 @@ from twin.live.prediction.prediction_tube import PredictionTube
 from twin.live.provenance import identity
 from twin.live.seen import Pace, Seen, Standing
 from twin.live.signals.channels import BY_NAME
-from twin.live.signals.geodesy import Datum
-from twin.live.signals.measured import Measured
+from twin.live.signals.measured import Measured, Numbers
 from twin.live.stabilizer import Stabilizer
 from twin.live.stopwatch import Parts
 from twin.num import as_given
@@ -36,11 +36,9 @@ PARAMETERS_EVERY = 10  # ticks between two lists of adapted numbers
 
 
 class Ears(Protocol):
-    """Where results come from."""
+    """Where results come from, and who puts positions on the chart."""
 
-    @property
-    def datum(self) -> Datum | None:
-        """Where the chart touches the earth; None while nobody knows."""
+    decoder: Decoder
 
     def read(self, instant: Instant) -> list[Result]:
         """What came in since the last tick."""
@@ -124,8 +122,16 @@ class Loop:
             instant, measured, estimate, situation, physics, forces, verdict, learned, ahead, certified
         )
         tick = self.publisher.tick(self.last, self._standing(self.last))
-        self.voice.send(tick, self.ears.datum)
+        self.voice.send(tick, self.ears.decoder.chart)
+        self._carry_chart(measured.si, estimate)
         return tick
+
+    def _carry_chart(self, si: Numbers, e: Estimate) -> None:
+        """From the next tick on the chart touches the earth near the ship: where it is measured, or else
+        believed, to be."""
+        decoder = self.ears.decoder
+        if decoder.chart is not None and e.ready:
+            decoder.chart = decoder.chart.near(si.get("x", e.x), si.get("y", e.y))
 
     def _doubts(self) -> list[str]:
         """Which instruments contradict each other, in words: nothing is learned from them."""

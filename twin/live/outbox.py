@@ -7,7 +7,7 @@ from twin.live.keelson.bus import Bus
 from twin.live.keelson.messages import wrap
 from twin.live.keelson.topics import OUTPUTS, key
 from twin.live.publish import Publisher
-from twin.live.signals.geodesy import Datum
+from twin.live.signals.chart import Chart
 
 TICK = next(output for output in OUTPUTS if output.subject == "twin_tick")
 
@@ -21,14 +21,14 @@ class Outbox:
         self.publisher, self.bus, self.log = publisher, bus, log
         self._keys = {output: key(base, entity, output.subject, output.source) for output in OUTPUTS}
 
-    def send(self, tick: Any, datum: Datum | None) -> None:
+    def send(self, tick: Any, chart: Chart | None) -> None:
         """Never waits, never raises."""
         wall_ns = round(tick.wall_s * 1e9)
         if self.bus is None:
             data = tick.SerializeToString()
         else:
             data = b""
-            for output, payload in self.publisher.due(tick, datum):
+            for output, payload in self.publisher.due(tick, chart):
                 self.bus.publish(self._keys[output], wrap(payload, wall_ns))
                 data = payload if output is TICK else data
         if self.log is not None:

@@ -12,7 +12,7 @@ from twin.live.learning.learned_force import Learned
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, Region
 from twin.live.seen import Seen, Standing
-from twin.live.signals.geodesy import Datum, from_chart
+from twin.live.signals.chart import Chart
 from twin.live.signals.measured import Measured
 from twin.physics.core import Tau
 from twin.physics.maths import total
@@ -84,14 +84,14 @@ class Publisher:
             said["tube"] = self._finite(border_region(r)) | words
         return said
 
-    def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:
-        """The subjects whose time has come, encoded; `datum` is the origin of north and east."""
+    def due(self, tick: Any, chart: Chart | None) -> list[tuple[Output, bytes]]:
+        """The subjects whose time has come, encoded; `chart`: where its place is on earth."""
         ns = int(tick.wall_s * 1e9)
         said = []
         for output in OUTPUTS:
             if tick.time_s < self._next.get(output, 0.0):
                 continue
-            data = self._identity(ns) if output is IDENTITY else _encode(output, tick, datum, ns)
+            data = self._identity(ns) if output is IDENTITY else _encode(output, tick, chart, ns)
             if data is not None:
                 said.append((output, data))
                 self._next[output] = tick.time_s + output.every_s - 1e-6
@@ -169,7 +169,7 @@ def named(force: Tau) -> dict[str, float]:
     return {"X_N": force[0], "Y_N": force[1], "N_Nm": force[2]}
 
 
-def _encode(output: Output, tick: Any, datum: Datum | None, ns: int) -> bytes | None:
+def _encode(output: Output, tick: Any, chart: Chart | None, ns: int) -> bytes | None:
     """One subject from the wide record; None when there is nothing to say."""
     e = tick.estimate
     if output.subject == "twin_tick":
@@ -178,8 +178,8 @@ def _encode(output: Output, tick: Any, datum: Datum | None, ns: int) -> bytes | 
         return messages.encode_string("; ".join([tick.mode, *tick.reasons]), ns)
     if output.subject == "location_fix":
         return (
-            messages.encode_fix(*from_chart(datum, e.north_m, e.east_m), ns)
-            if datum and e.HasField("north_m")
+            messages.encode_fix(*chart.position(e.north_m, e.east_m), ns)
+            if chart and e.HasField("north_m")
             else None
         )
     if output.subject in ("force_newton", "moment_newton_meter"):

@@ -8,6 +8,7 @@ from twin.live.keelson import messages, topics
 from twin.live.keelson.decode import Decoder, Result, check, from_row
 from twin.live.keelson.schema import keelson_class
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
+from twin.live.signals.chart import Chart
 from twin.live.signals.geodesy import datum
 from twin.live.signals.readings import WORDS, Quality, Reading, Rejected
 from twin.live.signals.sentinels import CODES
@@ -18,7 +19,7 @@ FIX = topics.key("twin", "ship", "location_fix", "gps")
 
 
 def one(key: str, payload: bytes, decoder: Decoder | None = None) -> Result:
-    results = (decoder or Decoder(datum(57.7, 11.9))).decode(key, messages.wrap(payload, NS), 7.0)
+    results = (decoder or Decoder(Chart(datum(57.7, 11.9)))).decode(key, messages.wrap(payload, NS), 7.0)
     return results[0]
 
 
@@ -35,7 +36,7 @@ def test_a_good_scalar_becomes_a_reading() -> None:
 
 def test_a_good_position_becomes_two_readings() -> None:
     fix = messages.wrap(messages.encode_fix(57.701, 11.9, NS), NS)
-    results = Decoder(datum(57.7, 11.9)).decode(FIX, fix, 7.0)
+    results = Decoder(Chart(datum(57.7, 11.9))).decode(FIX, fix, 7.0)
     assert [r.channel for r in results] == ["north_m", "east_m"]
     assert isinstance(results[0], Reading) and results[0].value == pytest.approx(111.36, abs=0.02)
 
@@ -104,7 +105,7 @@ def test_no_code_for_not_available_is_a_value_of_every_day() -> None:
 
 
 def test_I20_positions_across_the_antimeridian_are_no_jump_and_the_pole_is_refused() -> None:
-    decoder = Decoder(datum(-17.0, 179.9995))
+    decoder = Decoder(Chart(datum(-17.0, 179.9995)))
     fixes = [messages.wrap(messages.encode_fix(-17.0, lon, NS), NS) for lon in (179.9999, -179.9999)]
     west, east = (decoder.decode(FIX, fix, 7.0)[1] for fix in fixes)
     assert isinstance(west, Reading) and isinstance(east, Reading)
@@ -117,7 +118,7 @@ def test_one_wild_first_position_does_not_become_the_datum() -> None:
     decoder = Decoder()
     codes = [code(FIX, messages.encode_fix(lat, 11.9, NS), decoder) for lat in (12.0, 57.7, 57.7001)]
     assert codes == [Quality.UNCONFIRMED, Quality.UNCONFIRMED, Quality.OK]
-    assert decoder.datum is not None and decoder.datum.latitude_deg == 57.7
+    assert decoder.chart is not None and decoder.chart.at.latitude_deg == 57.7
 
 
 def wrong_types() -> list[bytes]:

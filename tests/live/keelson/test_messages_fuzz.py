@@ -6,6 +6,7 @@ from math import isfinite
 from twin.live.keelson import messages, topics
 from twin.live.keelson.decode import EARLIEST_S, LATEST_S, Decoder
 from twin.live.signals.channels import BY_NAME
+from twin.live.signals.chart import Chart
 from twin.live.signals.geodesy import MAX_DISTANCE_M, datum
 from twin.live.signals.readings import Reading
 
@@ -48,7 +49,7 @@ def mutated(rng: random.Random, data: bytes) -> bytes:
 def test_no_message_however_mangled_crashes_or_passes_what_is_no_measurement() -> None:
     rng = random.Random(20260917)
     good = seeds()
-    decoder = Decoder(datum(57.7, 11.9))
+    decoder = Decoder(Chart(datum(57.7, 11.9)))
     passed = 0
     for _ in range(CASES):
         key, payload = good[rng.randrange(len(good))]

@@ -15,6 +15,7 @@ from twin.live.keelson import meanings, messages
 from twin.live.keelson.bus import MemoryBus
 from twin.live.keelson.topics import INPUTS, OUTPUTS
 from twin.live.outbox import Outbox
+from twin.live.signals.chart import Chart
 from twin.live.signals.geodesy import datum
 
 ROOT = Path(__file__).parents[3]
@@ -56,7 +57,7 @@ def test_keelsons_sdk_decodes_everything_the_twin_says(make_bridge, sdk):
     with the numbers of the wide record."""
     bridge, bus = make_bridge(), MemoryBus()
     bridge.loop.voice = Outbox(bridge.loop.publisher, "fleet", "alma", bus)
-    bridge.ears.datum = datum(57.6, 11.6)
+    bridge.ears.decoder.chart = Chart(datum(57.6, 11.6))
     ticks = bridge.run(10.0)
     found = {}
     for key, envelope in bus.sent:

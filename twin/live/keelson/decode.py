@@ -16,7 +16,8 @@ from google.protobuf.unknown_fields import UnknownFieldSet
 from twin.live.keelson import messages
 from twin.live.keelson.topics import FIX, Topic, address, is_own, topic_of
 from twin.live.signals.channels import BY_NAME
-from twin.live.signals.geodesy import MAX_DISTANCE_M, MAX_LATITUDE_DEG, Datum, datum, to_chart
+from twin.live.signals.chart import Chart
+from twin.live.signals.geodesy import MAX_DISTANCE_M, MAX_LATITUDE_DEG, datum
 from twin.live.signals.readings import Quality, Reading, Rejected
 from twin.live.signals.sentinels import is_no_position, is_sentinel
 from twin.num import as_given
@@ -49,13 +50,13 @@ class Refuse(Exception):
 class Decoder:
     """Bytes in, readings or rejections out.
 
-    Holds the datum of the flat chart: given, or the first position that the next one agrees with (one wild
-    first fix would otherwise put the whole voyage outside the chart).
+    Holds the voyage's chart: given, or begun at the first position that the next one agrees with (one wild
+    first fix would otherwise put the whole voyage outside it). Who knows where the ship is moves it along.
     """
 
-    def __init__(self, at: Datum | None = None, actuators: Collection[str] | None = None):
+    def __init__(self, chart: Chart | None = None, actuators: Collection[str] | None = None):
         """actuators: channels of the ship's own; None where the ship is not known."""
-        self.datum, self.actuators = at, actuators
+        self.chart, self.actuators = chart, actuators
         self._first: tuple[float, float] | None = None
         self._keys: dict[str, tuple[Topic | None, str]] = {}
 
@@ -126,23 +127,24 @@ class Decoder:
     def _on_chart(self, latitude: float, longitude: float) -> tuple[float, float]:
         if abs(latitude) > MAX_LATITUDE_DEG:
             raise Refuse(Quality.OUTSIDE_AREA, f"latitude {latitude}, beyond {MAX_LATITUDE_DEG}")
-        if self.datum is None:
-            self.datum = self._settled(latitude, longitude)
-        place = to_chart(self.datum, latitude, longitude)
+        if self.chart is None:
+            self.chart = self._begun(latitude, longitude)
+        place = self.chart.place(latitude, longitude)
         if place is None:
-            where = f"the datum {self.datum.latitude_deg:.4f}, {self.datum.longitude_deg:.4f}"
+            at = self.chart.at
+            where = f"the ship's last place {at.latitude_deg:.4f}, {at.longitude_deg:.4f}"
             far = f"more than {MAX_DISTANCE_M / 1e3:.0f} km from {where}"
             raise Refuse(Quality.OUTSIDE_AREA, f"{latitude:.4f}, {longitude:.4f} is {far}")
         return place
 
-    def _settled(self, latitude: float, longitude: float) -> Datum:
-        """The datum at the position before this one, when the two are near each other."""
+    def _begun(self, latitude: float, longitude: float) -> Chart:
+        """A chart whose datum is the position before this one, when the two are near each other."""
         first, self._first = self._first, (latitude, longitude)
         if first is not None:
-            at = datum(*first)
-            place = to_chart(at, latitude, longitude)
+            chart = Chart(datum(*first))
+            place = chart.place(latitude, longitude)
             if place is not None and hypot(*place) <= NEAR_M:
-                return at
+                return chart
         raise Refuse(
             Quality.UNCONFIRMED, f"{latitude:.4f}, {longitude:.4f} waits for a second position near it"
         )

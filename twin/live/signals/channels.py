@@ -34,8 +34,8 @@ class Channel:
 DEG = pi / 180.0
 
 CHANNELS: tuple[Channel, ...] = (
-    Channel("north_m", "x", 1.0, -1e6, 1e6, 60.0, doc="position north of the voyage's datum"),
-    Channel("east_m", "y", 1.0, -1e6, 1e6, 60.0, doc="position east of the voyage's datum"),
+    Channel("north_m", "x", 1.0, -1e9, 1e9, 60.0, doc="position north of the voyage's datum"),
+    Channel("east_m", "y", 1.0, -1e9, 1e9, 60.0, doc="position east of the voyage's datum"),
     Channel(
         "heading_true_north_deg", "psi", DEG, -360.0, 720.0, 60.0, wraps=360.0, doc="heading from true north"
     ),
