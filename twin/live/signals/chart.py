@@ -6,7 +6,7 @@ It is a plane that touches the earth (geodesy.py), and it goes along with the sh
 TURN_RAD against the plane's north, or the ship is CHART_REACH_M from where the plane touches, it touches at
 the ship's place instead. That place keeps its north_m and east_m, so nothing that remembers places need be
 told: what is remembered `d` metres away is off by TURN_RAD d, 0.1 m at 1 km. Along a parallel north_m creeps
-by half of TURN_RAD: 25 m in 500 km.
+by some half of TURN_RAD: 27 m in 500 km.
 
 This is the plane sailing of a nautical almanac: no map of the earth. Who sails round an area A comes back to
 other numbers, by about A tan(latitude)/R, R the earth's radius.
