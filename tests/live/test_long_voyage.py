@@ -16,7 +16,7 @@ from twin.live.inbox import Inbox
 from twin.live.keelson import messages
 from twin.live.keelson.bus import MemoryBus
 from twin.live.keelson.messages import encode_fix, encode_float, wrap
-from twin.live.keelson.topics import BY_SUBJECT, key
+from twin.live.keelson.topics import BY_SUBJECT, address, key
 from twin.live.log.log_rows import read_rows
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import LogFile
@@ -164,8 +164,9 @@ def test_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_servic
 @pytest.fixture
 def live_log(kvlcc2, sailing, certificate_file, tmp_path):
     """Three minutes at 85 deg north across the antimeridian, recorded live by the service's loop as the bus brought
-    them; with its settings, and the charts it had."""
+    them; with its settings, and how far from the ship each place was that it said."""
     path, bus, earth, charts, now_s = tmp_path / "live.mcap", MemoryBus(), OnEarth(85.0, 179.98), [], 500.0
+    off_m = list[float]()
     sailing.helm_deg, sailing.state = weaves, (0.0, 0.0, radians(90.0), *sailing.state[3:])
     chosen = Settings({"observer.certificate": str(certificate_file)})
     with LogFile(path) as log:
@@ -184,10 +185,17 @@ def live_log(kvlcc2, sailing, certificate_file, tmp_path):
             loop.tick(Instant(k, now_s, 1.7e9 + now_s))
             if inbox.decoder.chart not in charts:
                 charts.append(inbox.decoder.chart)
+            off_m += [
+                earth.off_m(fix.latitude, fix.longitude)
+                for at, data in bus.sent
+                if address(at).subject == "location_fix"
+                for fix in [messages.LocationFix.FromString(messages.unwrap(data)[1])]
+            ]
+            bus.sent.clear()
             sailing.advance()
             now_s += 0.1
     assert len(charts) > 10
-    return path, chosen, kvlcc2.U_0
+    return path, chosen, kvlcc2.U_0, off_m
 
 
 def ticks_of(path):
@@ -199,7 +207,7 @@ def ticks_of(path):
 
 
 def test_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_bytes(live_log, tmp_path):
-    path, chosen, _ = live_log
+    path, chosen, _, _ = live_log
     again = [tmp_path / f"{k}.mcap" for k in range(3)]
     for log, made in ((path, again[0]), (path, again[1]), (again[0], again[2])):
         replay(log, chosen, made)
@@ -211,9 +219,16 @@ def test_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_b
 
 def test_a_log_of_a_voyage_on_which_the_chart_went_along_is_read_ashore_without_a_jump(live_log):
     """Expected: from sample to sample no more than the ship sails in 0.1 s and the noise of two fixes."""
-    path, _, U_0 = live_log
+    path, _, U_0, _ = live_log
     _, columns = read_rows(path)
     steps = np.hypot(np.diff(columns["north_m"]), np.diff(columns["east_m"]))
     steps = steps[np.isfinite(steps)]
     assert steps.size > 1700
     assert steps.max() < 0.1 * U_0 + 6.0 * 0.3 * sqrt(2.0)
+
+
+def test_what_is_said_of_the_place_on_earth_is_where_the_ship_is(live_log):
+    """Expected: once a second, within what the receiver's noise leaves."""
+    _, _, _, off_m = live_log
+    assert len(off_m) > 170
+    assert max(off_m[10:]) < 1.0
