@@ -24,6 +24,27 @@ def test_latitude_and_longitude_become_north_and_east_across_the_antimeridian(co
     assert v.meta["datum"]["longitude_deg"] == pytest.approx(179.9995)
 
 
+def test_a_voyage_in_degrees_may_be_of_any_length_and_wild_fixes_bend_no_track(columns, write_csv):
+    """Test: 600 km east along 60 deg north, two fixes a degree off. Expected: the length by the radius of the
+    parallel; no place blanked but the wild ones; north off by no more than the meridians turn in what the chart
+    reaches, 368 m and the places of which it takes the median."""
+    t = columns["time_s"]
+    radius = (
+        6378137.0 / np.sqrt(1.0 - 0.00669437999 * np.sin(np.radians(60.0)) ** 2) * np.cos(np.radians(60.0))
+    )
+    way = np.linspace(0.0, 600e3, t.size)
+    latitude, longitude = 60.0 + 0.0 * t, 11.0 + np.degrees(way / radius)
+    wild = [t.size // 2, t.size // 2 + 1]
+    latitude[wild] += 1.0
+    placed = {n: x for n, x in columns.items() if n not in ("north_m", "east_m")}
+    v = read_voyage(write_csv(placed | {"latitude_deg": latitude, "longitude_deg": longitude}, digits=14))
+    good = np.setdiff1d(np.arange(t.size), wild)
+    assert np.isfinite(v["east_m"][good]).all()
+    np.testing.assert_allclose(v["east_m"][good], way[good], atol=3.0)
+    turns = (368.0 + 3.0 * way[1]) * np.tan(np.radians(60.0)) / 6378137.0
+    np.testing.assert_allclose(v["north_m"][good], 0.0, atol=turns * 600e3)
+
+
 def test_velocities_alone_are_integrated_and_positions_alone_are_differentiated(sail, write_csv, required):
     full = sail(120.0, noise=0.0)
     velocities = {n: full[n] for n in required if n not in ("north_m", "east_m")}

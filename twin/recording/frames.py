@@ -6,7 +6,8 @@ north' = u cos psi - v sin psi        east' = u sin psi + v cos psi
 
 import numpy as np
 
-from twin.live.signals.geodesy import datum, to_chart
+from twin.live.signals.chart import Chart, RecentPlaces
+from twin.live.signals.geodesy import datum
 from twin.live.signals.sentinels import is_no_position
 
 SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
@@ -15,18 +16,20 @@ SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
 def chart(
     latitude_deg: np.ndarray, longitude_deg: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
-    """(north_m, east_m, datum) on the plane that touches the earth at the first position; NaN without one.
-    All (N,): [deg] in, [m] out."""
+    """(north_m, east_m, datum) on a chart that begins at the first position and goes along with the ship; NaN
+    without a position. All (N,): [deg] in, [m] out."""
     places = list(zip(latitude_deg.tolist(), longitude_deg.tolist(), strict=True))
     good = [not (a != a or b != b or is_no_position(a, b)) for a, b in places]
     if not any(good):
         nothing = np.full(latitude_deg.shape, np.nan)
         return nothing, nothing.copy(), {}
     first = places[good.index(True)]
-    at = datum(*first)
-    points = [
-        (to_chart(at, *p) if ok else None) or (np.nan, np.nan) for p, ok in zip(places, good, strict=True)
-    ]
+    plane, recent, points = Chart(datum(*first)), RecentPlaces(), []
+    for place, ok in zip(places, good, strict=True):
+        point = plane.place(*place) if ok else None
+        points.append(point or (np.nan, np.nan))
+        if point:
+            plane = recent.carry(plane, point)
     north, east = np.array(points).T
     return north, east, {"latitude_deg": first[0], "longitude_deg": first[1]}
 

@@ -98,6 +98,22 @@ def test_a_foreign_log_of_keelson_scalars_is_put_on_one_base(tmp_path: Path) -> 
     assert (columns["wave_height_significant_m"] == 2.0).all()
 
 
+def test_positions_of_a_foreign_log_may_lead_as_far_as_they_like(tmp_path: Path) -> None:
+    """Test: 5 degrees of latitude, and a second receiver far away. Expected: the length of the meridian by hand."""
+    with LogFile(tmp_path / "a.mcap") as log:
+        for i in range(5001):
+            ns = START * 10**9 + i * 1_000_000_000
+            for source, latitude in (("gps", 57.0 + i * 1e-3), ("other", 57.5)):
+                if source == "gps" or i > 10:
+                    fix = messages.encode_fix(latitude, 11.9, ns)
+                    log.add(topics.key("twin", "ship", "location_fix", source), topics.FIX, fix, ns)
+            scalar(log, "heading_true_north_deg", 0.0, ns)
+    _, columns = read_rows(tmp_path / "a.mcap")
+    north = columns["north_m"][np.isfinite(columns["north_m"])]
+    assert north.size > 4990
+    assert north[-1] - north[0] == pytest.approx(556.9e3, rel=2e-3)
+
+
 def test_a_log_without_measurements_is_one_clear_line(tmp_path: Path) -> None:
     with LogFile(tmp_path / "a.mcap") as log:
         log.add("a/b", "keelson.TimestampedString", messages.encode_string("x", 1), 1)

@@ -5,7 +5,7 @@ from math import cos, degrees, hypot, nan, radians, sin, sqrt, tan
 
 import pytest
 
-from twin.live.signals.chart import CHART_REACH_M, TURN_RAD, Chart, reach_m
+from twin.live.signals.chart import CHART_REACH_M, TURN_RAD, Chart, RecentPlaces, reach_m
 from twin.live.signals.geodesy import E2, A, convergence_deg, datum
 
 
@@ -119,3 +119,13 @@ def test_no_chart_is_drawn_at_a_pole_and_the_last_one_stays() -> None:
     chart = Chart(datum(89.4, 11.0))
     assert chart.near(20e3, 0.0) is chart
     assert chart.near(-20e3, 0.0) is not chart
+
+
+def test_two_wild_places_of_a_recording_move_its_chart_nowhere_and_a_way_does() -> None:
+    """Expected: after five places the third largest of each axis, north and east, is where the plane touches."""
+    chart, recent = Chart(datum(60.0, 11.0)), RecentPlaces()
+    wild = (0.0, 90e3), (-90e3, 90e3)
+    for place in ((0.0, 0.0), *wild, (0.0, 300.0), (10.0, 350.0), (0.0, 360.0), (20.0, 400.0), (30.0, 450.0)):
+        assert recent.carry(chart, place) is chart
+    moved = recent.carry(chart, (40.0, 500.0))
+    assert (moved.north_m, moved.east_m) == (20.0, 400.0)

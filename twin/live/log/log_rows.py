@@ -16,10 +16,12 @@ from twin.errors import DataError
 from twin.live.keelson.decode import Decoder, Result
 from twin.live.keelson.messages import channel_name
 from twin.live.keelson.schema import classes_from_set
+from twin.live.keelson.topics import POSITION
 from twin.live.keelson.wire import double_columns
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.onebase import Columns, on_one_base, without_repeats
 from twin.live.signals.channels import BY_NAME
+from twin.live.signals.chart import RecentPlaces
 from twin.live.signals.readings import WORDS, Reading
 
 UNREADABLE = "that cannot be decoded"
@@ -57,7 +59,7 @@ class LogRows:
     def __init__(self, reader: McapReader):
         self.refused: Counter[str] = Counter()
         self._reader = reader
-        self._decoder = Decoder()
+        self._decoder, self._recent = Decoder(), RecentPlaces()
         self._rows: list[bytes] = []
         self._ticks: list[bytes] = []
         self._samples: dict[str, tuple[list[float], list[float]]] = {}
@@ -71,8 +73,10 @@ class LogRows:
         elif type_name == TICK:
             self._ticks.append(data)
         elif not (self._rows or self._ticks):
-            for result in self._decoder.decode_stripped(topic, data, 0.0):
+            results = self._decoder.decode_stripped(topic, data, 0.0)
+            for result in results:
                 self._sample(result)
+            self._carry_chart(results)
 
     def columns(self) -> tuple[np.ndarray, Columns]:
         """Rows if there are any, else what the ticks measured, else the scalars. All (N,), the time in
@@ -137,6 +141,14 @@ class LogRows:
             for field in self._class(type_name, wanted).DESCRIPTOR.fields
         }
         return {names[number]: values for number, values in numbers.items() if number in names}, ~odd
+
+    def _carry_chart(self, results: list[Result]) -> None:
+        """The chart goes along with the receiver that is used."""
+        places = [r for r in results if isinstance(r, Reading) and r.channel in POSITION]
+        if self._decoder.chart and len(places) == len(POSITION):
+            north, east = places
+            if north.source == self._speaker[north.channel]:
+                self._decoder.chart = self._recent.carry(self._decoder.chart, (north.value, east.value))
 
     def _sample(self, result: Result) -> None:
         if isinstance(result, Reading):

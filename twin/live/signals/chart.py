@@ -12,10 +12,13 @@ This is the plane sailing of a nautical almanac: no map of the earth. Who sails 
 other numbers, by about A tan(latitude)/R, R the earth's radius.
 """
 
+from collections import deque
+
 from twin.errors import SettingsError
 from twin.live.signals.geodesy import MAX_DISTANCE_M, A, Datum, datum, from_chart, to_chart
 
 TURN_RAD = 1e-4  # 0.006 deg: a tenth of a good compass' noise
+RECENT = 5  # places of which two may be wild
 CHART_REACH_M = 10e3  # near the equator, where north hardly turns: a distance reads 4 mm short there
 
 
@@ -47,6 +50,22 @@ class Chart:
             return Chart(datum(*self.position(north_m, east_m)), north_m, east_m)
         except SettingsError:
             return self
+
+
+class RecentPlaces:
+    """The last places of a recording, where nobody estimates the ship's: their median is where it is."""
+
+    def __init__(self) -> None:
+        self._places: deque[tuple[float, float]] = deque(maxlen=RECENT)
+
+    def carry(self, chart: Chart, place: tuple[float, float]) -> Chart:
+        """The chart with which the recording goes on behind this place (north_m, east_m); one or two that
+        stand out move it nowhere."""
+        self._places.append(place)
+        if len(self._places) < RECENT or chart.near(*place) is chart:
+            return chart
+        north, east = (sorted(axis)[RECENT // 2] for axis in zip(*self._places, strict=True))
+        return chart.near(north, east)
 
 
 def reach_m(at: Datum) -> float:
