@@ -228,7 +228,9 @@ def _messages() -> str:
     blocks.append(
         "\n### shiptwin.Row, shiptwin.Ages, shiptwin.Codes\n\n"
         f"One optional field a channel, by the channel's name: {channels}. `Row` has `time_s` in "
-        f"front; `Ages` are seconds; `Codes` are: {codes}.\n"
+        f"front; `Ages` are seconds; `Codes` are: {codes}.\n\n"
+        "`north_m` and `east_m` are what was sailed towards true north and true east since the voyage's "
+        "datum: over any length, but no map (docs/live.md). The place on earth is `location_fix`.\n"
     )
     return "".join(blocks)
 

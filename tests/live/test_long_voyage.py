@@ -118,7 +118,7 @@ VOYAGES = {  # ship, position, heading, what has been sailed before: beyond ever
 
 
 @pytest.mark.parametrize("name", VOYAGES)
-def test_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_service):
+def test_I20_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_service):
     """Test: five minutes with several moves, then half a minute without log and without compass, gyro and course
     carrying the heading. Expected: both loops say the same of motion, health and promise; place and prediction are off
     by no more than TURN_RAD of what was sailed meanwhile; the position on earth is the true one."""
@@ -206,7 +206,7 @@ def ticks_of(path):
     ]
 
 
-def test_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_bytes(live_log, tmp_path):
+def test_I20_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_bytes(live_log, tmp_path):
     path, chosen, _, _ = live_log
     again = [tmp_path / f"{k}.mcap" for k in range(3)]
     for log, made in ((path, again[0]), (path, again[1]), (again[0], again[2])):
@@ -217,7 +217,7 @@ def test_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_b
         assert one.certificate == other.certificate and list(one.predictions) == list(other.predictions)
 
 
-def test_a_log_of_a_voyage_on_which_the_chart_went_along_is_read_ashore_without_a_jump(live_log):
+def test_I20_a_log_of_a_voyage_on_which_the_chart_went_along_is_read_ashore_without_a_jump(live_log):
     """Expected: from sample to sample no more than the ship sails in 0.1 s and the noise of two fixes."""
     path, _, U_0, _ = live_log
     _, columns = read_rows(path)
@@ -227,7 +227,7 @@ def test_a_log_of_a_voyage_on_which_the_chart_went_along_is_read_ashore_without_
     assert steps.max() < 0.1 * U_0 + 6.0 * 0.3 * sqrt(2.0)
 
 
-def test_what_is_said_of_the_place_on_earth_is_where_the_ship_is(live_log):
+def test_I20_what_is_said_of_the_place_on_earth_is_where_the_ship_is(live_log):
     """Expected: once a second, within what the receiver's noise leaves."""
     _, _, _, off_m = live_log
     assert len(off_m) > 170
