@@ -81,10 +81,10 @@ class InDegrees:
         fix = self.earth.fix(r.value - x, said["east_m"].value - y)
         data = wrap(encode_fix(*fix, round(r.time_s * 1e9)), round(r.time_s * 1e9))
         placed = self.decoder.decode(FIX, data, r.received_s)
-        assert all(isinstance(p, Reading) for p in placed)
         self.moves += self.decoder.chart is not self._chart
         self._chart = self.decoder.chart
-        return [*(p._replace(time_s=r.time_s, source="ship") for p in placed), *readings[2:]]
+        said_s = {"time_s": r.time_s, "source": "ship"}
+        return [*(p._replace(**said_s) if isinstance(p, Reading) else p for p in placed), *readings[2:]]
 
 
 def counted_from(north_m: float, east_m: float) -> Alter:
@@ -159,6 +159,21 @@ def test_I20_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_se
         assert sure.sigma((0.0,) * 6) == pytest.approx(
             other.loop.predictor.sureness[horizon_s].sigma((0.0,) * 6), rel=0.25
         )
+
+
+def test_I20_a_ship_that_sailed_far_while_its_computer_slept_is_found_again(make_service):
+    """Test: two hours and 300 km without a tick. Expected: the second position is believed, and a minute later the ship
+    is said to be where it is; nothing is promised or said about places that is not finite."""
+    bridge = make_service(heading_deg=90.0, helm_deg=weaves, seed=5)
+    earth = OnEarth(60.0, 179.0)
+    alter = InDegrees(earth, bridge, 0.0, 0.0)
+    bridge.run(60.0, alter)
+    bridge.now_s += 7200.0
+    bridge.sailing.state = (0.0, bridge.sailing.state[1] + 300e3, *bridge.sailing.state[2:])
+    ticks = bridge.run(60.0, lambda said, b: alter(said, b))
+    chart, e = bridge.ears.decoder.chart, ticks[-1].estimate
+    assert earth.off_m(*chart.position(e.north_m, e.east_m)) < 2.0
+    assert bridge.loop.sensors.rejected == 2 and ticks[-1].mode == bridge.ticks[550].mode
 
 
 @pytest.fixture

@@ -121,6 +121,22 @@ def test_one_wild_first_position_does_not_become_the_datum() -> None:
     assert decoder.chart is not None and decoder.chart.at.latitude_deg == 57.7
 
 
+def test_a_position_far_away_is_believed_once_none_nearer_has_come_for_an_hour() -> None:
+    """Expected: refused up to an hour after the last near one, then, like the first of all, with the second of its
+    kind; 5 degrees of latitude are 557 km; from then on what was near is far."""
+    decoder = Decoder(Chart(datum(57.0, 11.9)))
+
+    def at(latitude: float, received_s: float) -> float | Quality:
+        fix = messages.wrap(messages.encode_fix(latitude, 11.9, NS), NS)
+        (north, _) = decoder.decode(FIX, fix, received_s)
+        return north.quality if isinstance(north, Rejected) else round(north.value, -3)
+
+    far, first = Quality.OUTSIDE_AREA, Quality.UNCONFIRMED
+    assert [at(57.0, 0.0), at(62.0, 1.0), at(57.0, 10.0), at(62.0, 3610.0)] == [0.0, far, 0.0, far]
+    assert [at(62.0, 3611.0), at(62.0, 3612.0)] == [first, 557e3]
+    assert [at(57.0, 3613.0), at(62.001, 3614.0)] == [far, 557e3]
+
+
 def wrong_types() -> list[bytes]:
     """What other subjects' publishers send."""
     samples = []

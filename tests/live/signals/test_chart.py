@@ -109,10 +109,25 @@ def test_round_an_area_the_numbers_are_others_by_its_share_of_the_earth() -> Non
     assert place[1] == pytest.approx(side * side * tan(radians(60.0)) / A, rel=0.02)
 
 
-@pytest.mark.parametrize("place", [(nan, 0.0), (0.0, nan), (1e12, 0.0), (250e3, 0.0)])
+@pytest.mark.parametrize("place", [(nan, 0.0), (0.0, nan), (-1e12, 0.0), (1e300, 1e300)])
 def test_no_chart_is_drawn_where_no_ship_can_be(place: tuple[float, float]) -> None:
     chart = Chart(datum(60.0, 11.0))
     assert chart.near(*place) is chart
+
+
+@pytest.mark.parametrize("there", [(55.0, -160.0), (62.0, 175.0), (-10.0, 170.0)])
+def test_a_ship_that_turns_up_far_away_is_counted_by_middle_latitude(there: tuple[float, float]) -> None:
+    """Expected: by hand, and the same position again from a chart that was left behind."""
+    chart = Chart(datum(58.0, 179.0), 1e3, -2e3)
+    assert chart.place(*there) is None
+    far = chart.afar(*there)
+    turn = radians((there[1] - 179.0 + 180.0) % 360.0 - 180.0)
+    assert far.north_m == pytest.approx(1e3 + A * radians(there[0] - 58.0))
+    assert far.east_m == pytest.approx(-2e3 + A * turn * cos(radians(0.5 * (there[0] + 58.0))))
+    assert far.position(far.north_m, far.east_m) == pytest.approx(there)
+    assert chart.position(far.north_m, far.east_m) == pytest.approx(there)
+    back = chart.near(far.north_m, far.east_m)
+    assert (back.at.latitude_deg, back.at.longitude_deg) == pytest.approx(there)
 
 
 def test_no_chart_is_drawn_at_a_pole_and_the_last_one_stays() -> None:

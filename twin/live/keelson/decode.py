@@ -7,7 +7,7 @@ are in `sensors.py`.
 """
 
 from collections.abc import Collection
-from math import hypot, isfinite
+from math import hypot, inf, isfinite
 from typing import Any, NamedTuple
 
 from google.protobuf.message import DecodeError
@@ -26,6 +26,7 @@ EARLIEST_S = 946684800.0  # 2000-01-01: an earlier stamp is a clock that was nev
 LATEST_S = 4102444800.0  # 2100-01-01: a later stamp is garbage
 MAX_BYTES = 4096  # no sample the twin reads is longer
 NEAR_M = 1000.0  # two positions this near confirm each other
+FAR_S = 3600.0  # without a position nearer than MAX_DISTANCE_M, after which one that is farther counts
 MAX_KEYS = 512  # how many keys are remembered: a hostile sender cannot fill the memory
 
 Result = Reading | Rejected
@@ -58,6 +59,7 @@ class Decoder:
         """actuators: channels of the ship's own; None where the ship is not known."""
         self.chart, self.actuators = chart, actuators
         self._first: tuple[float, float] | None = None
+        self._near_s = inf  # when a position was last on the chart
         self._keys: dict[str, tuple[Topic | None, str]] = {}
 
     def decode(self, key: str, envelope: bytes, received_s: float) -> list[Result]:
@@ -97,9 +99,9 @@ class Decoder:
         return known
 
     def _payload(self, topic: Topic, source: str, payload: bytes, received_s: float) -> list[Result]:
-        decoded = self._fix if topic.type_name == FIX else _scalar
+        fix = topic.type_name == FIX
         try:
-            time_s, values = decoded(topic, payload)
+            time_s, values = self._fix(topic, payload, received_s) if fix else _scalar(topic, payload)
         except Refuse as refusal:
             return _reject(topic, refusal.quality, str(refusal), received_s, source)
         if len(values) == 1:
@@ -109,7 +111,7 @@ class Decoder:
             for channel, value in zip(topic.channels, values, strict=True)
         ]
 
-    def _fix(self, topic: Topic, payload: bytes) -> tuple[float, tuple[float, ...]]:
+    def _fix(self, topic: Topic, payload: bytes, received_s: float) -> tuple[float, tuple[float, ...]]:
         message = _parse(messages.LocationFix, payload)
         latitude, longitude = message.latitude, message.longitude
         unknown = {field.field_number for field in UnknownFieldSet(message)}
@@ -122,29 +124,31 @@ class Decoder:
             raise Refuse(Quality.SENTINEL, f"latitude {latitude}, longitude {longitude}: 'no position'")
         if not (-90.0 <= latitude <= 90.0 and -180.0 <= longitude <= 360.0):
             raise Refuse(Quality.OUT_OF_RANGE, f"latitude {latitude}, longitude {longitude}")
-        return time_s, self._on_chart(latitude, longitude)
+        return time_s, self._on_chart(latitude, longitude, received_s)
 
-    def _on_chart(self, latitude: float, longitude: float) -> tuple[float, float]:
+    def _on_chart(self, latitude: float, longitude: float, received_s: float) -> tuple[float, float]:
         if abs(latitude) > MAX_LATITUDE_DEG:
             raise Refuse(Quality.OUTSIDE_AREA, f"latitude {latitude}, beyond {MAX_LATITUDE_DEG}")
-        if self.chart is None:
-            self.chart = self._begun(latitude, longitude)
-        place = self.chart.place(latitude, longitude)
+        chart = self.chart
+        place = chart.place(latitude, longitude) if chart else None
         if place is None:
-            at = self.chart.at
-            where = f"the ship's last place {at.latitude_deg:.4f}, {at.longitude_deg:.4f}"
-            far = f"more than {MAX_DISTANCE_M / 1e3:.0f} km from {where}"
-            raise Refuse(Quality.OUTSIDE_AREA, f"{latitude:.4f}, {longitude:.4f} is {far}")
+            if chart and not received_s - self._near_s > FAR_S:
+                where = f"the ship's last place {chart.at.latitude_deg:.4f}, {chart.at.longitude_deg:.4f}"
+                far = f"more than {MAX_DISTANCE_M / 1e3:.0f} km from {where}"
+                raise Refuse(Quality.OUTSIDE_AREA, f"{latitude:.4f}, {longitude:.4f} is {far}")
+            self.chart, place = self._begun(latitude, longitude)
+        self._near_s = received_s
         return place
 
-    def _begun(self, latitude: float, longitude: float) -> Chart:
-        """A chart whose datum is the position before this one, when the two are near each other."""
+    def _begun(self, latitude: float, longitude: float) -> tuple[Chart, tuple[float, float]]:
+        """A chart that touches the earth at the position before this one, and this one's place on it, when
+        the two are near each other."""
         first, self._first = self._first, (latitude, longitude)
         if first is not None:
-            chart = Chart(datum(*first))
+            chart = self.chart.afar(*first) if self.chart else Chart(datum(*first))
             place = chart.place(latitude, longitude)
-            if place is not None and hypot(*place) <= NEAR_M:
-                return chart
+            if place is not None and hypot(place[0] - chart.north_m, place[1] - chart.east_m) <= NEAR_M:
+                return chart, place
         raise Refuse(
             Quality.UNCONFIRMED, f"{latitude:.4f}, {longitude:.4f} waits for a second position near it"
         )

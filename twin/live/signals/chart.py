@@ -6,13 +6,15 @@ It is a plane that touches the earth (geodesy.py), and it goes along with the sh
 TURN_RAD against the plane's north, or the ship is CHART_REACH_M from where the plane touches, it touches at
 the ship's place instead. That place keeps its north_m and east_m, so nothing that remembers places need be
 told: what is remembered `d` metres away is off by TURN_RAD d, 0.1 m at 1 km. Along a parallel north_m creeps
-by some half of TURN_RAD: 27 m in 500 km.
+by some half of TURN_RAD: 27 m in 500 km. Beyond MAX_DISTANCE_M there is no plane, and a ship that turns up
+there is counted by middle latitude: d north = R d lat, d east = R cos(mean lat) d lon, within a hundredth.
 
 This is the plane sailing of a nautical almanac: no map of the earth. Who sails round an area A comes back to
 other numbers, by about A tan(latitude)/R, R the earth's radius.
 """
 
 from collections import deque
+from math import cos, degrees, radians
 
 from twin.errors import SettingsError
 from twin.live.signals.geodesy import MAX_DISTANCE_M, A, Datum, datum, from_chart, to_chart
@@ -37,14 +39,31 @@ class Chart:
         return local and (self.north_m + local[0], self.east_m + local[1])
 
     def position(self, north_m: float, east_m: float) -> tuple[float, float]:
-        """(latitude_deg, longitude_deg) of a place within MAX_DISTANCE_M of where the plane touches."""
-        return from_chart(self.at, north_m - self.north_m, east_m - self.east_m)
+        """(latitude_deg, longitude_deg) of a place; near a pole, or where no ship can be, no true one."""
+        north, east = north_m - self.north_m, east_m - self.east_m
+        if north * north + east * east <= MAX_DISTANCE_M**2:
+            return from_chart(self.at, north, east)
+        latitude = self.at.latitude_deg + degrees(north / A)
+        shrunk = self._shrunk(latitude)
+        return latitude, (self.at.longitude_deg + degrees(east / (A * shrunk)) + 180.0) % 360.0 - 180.0
+
+    def afar(self, latitude_deg: float, longitude_deg: float) -> "Chart":
+        """The chart with which a ship goes on that has turned up beyond this one. SettingsError: near a
+        pole."""
+        turn = (longitude_deg - self.at.longitude_deg + 180.0) % 360.0 - 180.0
+        north = A * radians(latitude_deg - self.at.latitude_deg)
+        east = A * self._shrunk(latitude_deg) * radians(turn)
+        return Chart(datum(latitude_deg, longitude_deg), self.north_m + north, self.east_m + east)
+
+    def _shrunk(self, latitude_deg: float) -> float:
+        """cos(middle latitude) between here and there."""
+        return max(cos(radians(0.5 * (latitude_deg + self.at.latitude_deg))), 1e-3)
 
     def near(self, north_m: float, east_m: float) -> "Chart":
         """The chart with which a ship at this place goes on: this one, or one that touches the earth there.
         This one also where no plane is drawn: near a pole, or at no place."""
         north, east = north_m - self.north_m, east_m - self.east_m
-        if not self._square < north * north + east * east <= MAX_DISTANCE_M**2:
+        if not self._square < north * north + east * east:
             return self
         try:
             return Chart(datum(*self.position(north_m, east_m)), north_m, east_m)

@@ -53,8 +53,8 @@ WORDS: dict[Quality, str] = {
     Quality.GARBAGE: "cannot be decoded",
     Quality.CONFLICT: "two sources publish it",
     Quality.UNKNOWN_KEY: "a key the table of topics does not have",
-    Quality.OUTSIDE_AREA: f"more than {MAX_DISTANCE_M / 1e3:.0f} km from the ship's last place (start the "
-    f"twin again where it is), or beyond {MAX_LATITUDE_DEG} deg of latitude",
+    Quality.OUTSIDE_AREA: f"more than {MAX_DISTANCE_M / 1e3:.0f} km from the ship's last place (believed "
+    f"after an hour without a nearer one), or beyond {MAX_LATITUDE_DEG} deg of latitude",
     Quality.NOT_GIVEN: "this voyage does not have it",
     Quality.UNCONFIRMED: "the first of its kind; a second must agree with it",
 }
