@@ -22,6 +22,7 @@ from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import LogFile
 from twin.live.log_replay import replay
 from twin.live.outbox import Outbox
+from twin.live.prediction.due_predictions import Watch
 from twin.live.publish import Publisher
 from twin.live.signals.chart import TURN_RAD, Chart
 from twin.live.signals.config import Settings
@@ -127,6 +128,7 @@ def test_I20_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_se
     earth = OnEarth(*where)
     alters = InDegrees(earth, one, *before), counted_from(*before)
     inside = foretold = 0
+    watches, judged = [Watch(b.loop.ship, b.loop.predictor.horizons_s) for b in (one, other)], 0
     apart = {"speed": 0.0, "place": 0.0, "foretold": 0.0}
     silent = ("surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg")
     for seconds, lost in ((300.0, ()), (30.0, silent)):
@@ -146,11 +148,21 @@ def test_I20_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_se
                 foretold += 1
                 gap = hypot(p.state.north_m - q.state.north_m, p.state.east_m - q.state.east_m)
                 apart["foretold"] = max(apart["foretold"], gap)
+            seen = one.loop.last, other.loop.last
+            for (h, p), (_, q) in zip(
+                *(
+                    w.look(s.instant.time_s, s.measured, s.estimate, s.ahead, True)
+                    for w, s in zip(watches, seen, strict=True)
+                ),
+                strict=True,
+            ):
+                judged += h > 50.0
+                assert hypot(p.along - q.along, p.across - q.across) < TURN_RAD * 2e3
             if a.estimate.HasField("north_m") and not lost:
                 chart = one.ears.decoder.chart
                 assert earth.off_m(*chart.position(e.north_m, e.east_m)) < 2.0
     sailed = hypot(*one.sailing.state[:2])
-    assert alters[0].moves >= 4 and foretold > 100 and inside > 2500
+    assert alters[0].moves >= 4 and foretold > 100 and inside > 2500 and judged > 10
     assert one.loop.sensors.rejected == other.loop.sensors.rejected == 0
     assert apart["place"] < TURN_RAD * sailed and apart["speed"] < 10.0 * TURN_RAD
     assert apart["foretold"] < TURN_RAD * (sailed + 120.0 * one.loop.ship.U_0)
