@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from twin.live.demonstration import UNDER_WAY, ticks_of
+from twin.studio.live import Live
 
 HULL = "kvlcc2"
 FRAME = "document.querySelector('iframe')?.contentWindow.twinView?.frame()"
@@ -193,3 +194,16 @@ def test_where_nobody_speaks_nothing_looks_alive(page):
         attach(page, f"tcp/127.0.0.1:{probe.getsockname()[1]}")
         page.wait(f"!!{FRAME} && {OLD}", 20)
         assert "NOTHING HEARD YET" in page.value(INSIDE)
+
+
+def test_a_twin_that_is_looked_at_no_more_is_left():
+    """Test: one place on the bus, another, and none. Expected: the session with each is closed when it is left."""
+    live, sessions = Live(), []
+    for place in ("tcp/127.0.0.1:1", "tcp/127.0.0.1:2"):
+        live.attach(place, None)
+        sessions.append(live.watch.feed._session)
+    live.leave()
+    until = time.monotonic() + 10.0
+    while not all(s.is_closed() for s in sessions) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert [s.is_closed() for s in sessions] == [True, True]

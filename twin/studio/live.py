@@ -49,8 +49,13 @@ class Live:
             feed = BusFeed(settings)
         watch = self.watch = BridgeWatch(feed)
         watch.step(time.monotonic())
-        Thread(target=watch.run, args=(lambda: self.watch is watch,), name="live", daemon=True).start()
+        Thread(target=self._look, args=(watch,), name="live", daemon=True).start()
         return feed.name
+
+    def _look(self, watch: "BridgeWatch") -> None:
+        """Until another twin, or none, is looked at."""
+        watch.run(lambda: self.watch is watch)
+        watch.feed.close()
 
     @property
     def name(self) -> str:

@@ -2,7 +2,10 @@
 
 import http.client
 import json
+import signal
 import socket
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -141,3 +144,12 @@ def test_a_request_that_is_never_finished_holds_up_nobody(server, links):
 def test_a_port_that_is_taken_is_one_line(server, watch):
     with pytest.raises(TwinError, match=r"--port"):
         Server(watch, server.port, print)
+
+
+def test_a_view_that_is_interrupted_ends_as_one_that_was():
+    command = [sys.executable, "-m", "twin", "view", "--port", "0", "--connect", "tcp/127.0.0.1:1"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline().startswith("open once: ")
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 130
+        assert process.stderr.read().splitlines()[-1] == "interrupted"

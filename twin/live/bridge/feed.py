@@ -76,6 +76,10 @@ class BridgeFeed(Protocol):
         """The ticks since the last call, the oldest first; never waits. `now_s` is the monotonic time [s]."""
         ...
 
+    def close(self) -> None:
+        """Gives back what it holds; no call comes after it."""
+        ...
+
 
 class BusFeed:
     """The twin of these settings on the bus, heard through rings that keep the newest; no callbacks."""
@@ -113,6 +117,10 @@ class BusFeed:
             if sound(tick):
                 ticks.append(tick)
         return ticks
+
+    def close(self) -> None:
+        """Leaves the bus."""
+        self._session.close()
 
 
 def _identity(envelope: bytes) -> About | None:
@@ -157,6 +165,10 @@ class LogFeed:
             self._next = next(self._left, None)
         self.over = self._next is None
         return ticks
+
+    def close(self) -> None:
+        """Lets the log go, and so its file."""
+        self._next, self._left, self._source = None, iter(()), iter(())
 
     def _ticks(self) -> Iterator[Any]:
         found = False

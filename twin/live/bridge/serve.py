@@ -15,12 +15,9 @@ from twin.physics.ship import load
 
 
 def viewed(args: argparse.Namespace) -> int:
-    """Shows it until it is told to stop; the exit code."""
+    """Shows it until it is interrupted, or a log in the terminal is at its end; the exit code."""
     watch = BridgeWatch(_feed(args), _ship(args.ship))
-    try:
-        return _in_terminal(watch, args) if args.text else _on_page(watch, args)
-    except KeyboardInterrupt:
-        return 0
+    return _in_terminal(watch, args) if args.text else _on_page(watch, args)
 
 
 def _feed(args: argparse.Namespace) -> BridgeFeed:
