@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.physics.actuators import NUMBERS, OWN
+from twin.physics.actuators import NUMBERS, OWN, KeptForces
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
@@ -159,7 +159,8 @@ def columns(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at`
     label -> value)."""
-    s, acceleration = sailing(track, model)
+    kept = KeptForces()
+    s, acceleration = sailing(track, model, kept)
     reading = readings(s, model)
     A: np.ndarray = np.zeros((len(track), 3, len(unknowns)), dtype)
     R: np.ndarray = np.zeros((len(track), 8, len(unknowns)), dtype)
@@ -193,7 +194,7 @@ def columns(
         if fault:  # it changes what is read, and not how the ship moves
             R[:, :, j] = (readings(s, other) - reading) / step
             continue
-        a, r = respond(track, other)
+        a, r = respond(track, other, kept)
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
 

@@ -89,32 +89,46 @@ class Filters:
             noise.error,
         )
 
-    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """By the readings of step k; gives the innovations with their tangents (W, S, 8, 1 + P), in
-        standard deviations, and the diagonal of the root of their covariance (W, S, 8). RunsAway where
-        their covariance is none."""
-        stretches, H = self.stretches, self.stretches.H[k]
-        E = stretches.shown[k] - self.H[k] @ self.X[..., SHIP, :]
-        if stretches.erring is not None:
-            E[..., GROUND, :] -= stretches.erring[k].astype(LIGHT) @ self.X[..., ERROR, :]
+    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """By the readings of step k; gives the innovations with their tangents (W, R, 8, 1 + P), in
+        standard deviations, the diagonal of the root of their covariance (W, R, 8), and which R of the
+        segments had a reading (index); the others stay as they are. RunsAway where their covariance is
+        none."""
+        some = np.flatnonzero(self.stretches.here[k].any(-1))
+        if some.size == self.X.shape[1]:
+            return *self._corrected(k, slice(None), self.X, self.C), some
+        X, C = self.X[:, some], self.C[:, some]
+        read = self._corrected(k, some, X, C) if some.size else (X[..., :0, :], C[..., :0, 0])
+        self.X[:, some], self.C[:, some] = X, C
+        return *read, some
+
+    def _corrected(
+        self, k: int, some: np.ndarray | slice, X: np.ndarray, C: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same of some segments, whose mean X and covariance C are corrected in place."""
+        stretches, H, shown = self.stretches, self.stretches.H[k][some], self.stretches.shown[k][some]
+        erring = None if stretches.erring is None else stretches.erring[k][some]
+        E = shown - self.H[k][some] @ X[..., SHIP, :]
+        if erring is not None:
+            E[..., GROUND, :] -= erring.astype(LIGHT) @ X[..., ERROR, :]
         if self.turned.size:
-            more = self.turns[k] @ (E[..., :1] - stretches.shown[k][..., :1])
+            more = self.turns[k][some] @ (E[..., :1] - shown[..., :1])
             E[..., self.turned] += more.reshape(*E.shape[:2], -1, E.shape[2]).swapaxes(-1, -2)
-        HC = H @ self.C[..., SHIP, :]
-        if stretches.erring is not None:
-            HC[..., GROUND, :] += stretches.erring[k] @ self.C[..., ERROR, :]
+        HC = H @ C[..., SHIP, :]
+        if erring is not None:
+            HC[..., GROUND, :] += erring @ C[..., ERROR, :]
         S = HC[..., SHIP] @ H.swapaxes(-1, -2)
-        if stretches.erring is not None:
-            S[..., GROUND] += HC[..., ERROR] @ stretches.erring[k].swapaxes(-1, -2)
-        _diagonal(S)[...] += self.unread[k]
+        if erring is not None:
+            S[..., GROUND] += HC[..., ERROR] @ erring.swapaxes(-1, -2)
+        _diagonal(S)[...] += self.unread[k][:, some]
         try:
             L = np.linalg.cholesky(S)
         except np.linalg.LinAlgError:
             raise self._runs_away(k) from None
         inverse = lower_inverse(L)
         white, V = inverse.astype(LIGHT) @ E, inverse @ HC
-        self.X += V.swapaxes(-1, -2).astype(LIGHT) @ white
-        self.C -= V.swapaxes(-1, -2) @ V
+        X += V.swapaxes(-1, -2).astype(LIGHT) @ white
+        C -= V.swapaxes(-1, -2) @ V
         return white, _diagonal(L)
 
     def advance(self, k: int) -> None:

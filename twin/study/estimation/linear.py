@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from twin.physics.actuators import KeptForces
 from twin.physics.effect import Effect
 from twin.physics.maths import total
 from twin.physics.model import Model
@@ -138,11 +139,12 @@ def _bends(
     """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by
     filters.BENDS: at some steps, and along straight lines between them."""
     steps = np.unique(np.append(np.arange(0, len(track), EVERY), len(track) - 1))
-    some = track.where(steps)
+    some, beside_it, in_streams = track.where(steps), KeptForces(), KeptForces()
 
     def slopes(m: Model) -> np.ndarray:
         keep_steered(some, m, track, steps)  # a gear is stepped through all of them
-        return np.concatenate([jacobian(some, m)[:, :, 2:], by_stream(some, _without_current(m))], axis=2)
+        by_stream_too = by_stream(some, _without_current(m), in_streams)
+        return np.concatenate([jacobian(some, m, beside_it)[:, :, 2:], by_stream_too], axis=2)
 
     out, here = np.zeros((steps.size, 3, 6, len(unknowns)), np.float32), slopes(model)
     for j, unknown in enumerate(unknowns):

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from twin.study.estimation.filters import LIGHT
+
 FOLD = 16  # steps whose innovations are multiplied out together
 
 
@@ -50,22 +52,25 @@ class Sums:
             np.zeros((W, S)),
             np.zeros((W, S, 8)),
         )
-        self.held: list[tuple[np.ndarray, np.ndarray]] = []
+        # of each segment its last steps with readings, of which there are so many
+        self.held, self.count = np.zeros((W, S, FOLD, 8, 1 + P), LIGHT), np.zeros(S, int)
 
-    def add(self, white: np.ndarray, root: np.ndarray) -> None:
-        """One step: innovations with their tangents (W, S, 8, 1 + P), in standard deviations, and the
-        diagonal of the root of their covariance (W, S, 8)."""
-        self.held.append((white, root))
-        if len(self.held) == FOLD:
+    def add(self, white: np.ndarray, root: np.ndarray, some: np.ndarray) -> None:
+        """One step of some segments (R,): innovations with their tangents (W, R, 8, 1 + P), in standard
+        deviations, and the diagonal of the root of their covariance (W, R, 8)."""
+        if not some.size:
+            return
+        self.held[:, some, self.count[some]] = white
+        self.logdet[:, some] += 2.0 * np.log(root).sum(-1)
+        self.count[some] += 1
+        if self.count.max() == FOLD:
             self._fold()
 
     def _fold(self) -> None:
-        if self.held:
-            white = np.concatenate([w for w, _ in self.held], axis=2)
-            self.M += white.swapaxes(-1, -2) @ white
-            self.energy += np.square(white[..., 0]).reshape(*self.logdet.shape, -1, 8).sum(2)
-            self.logdet += 2.0 * np.log([root for _, root in self.held]).sum((0, 3))
-            self.held = []
+        white = self.held.reshape(*self.logdet.shape, -1, self.held.shape[-1])
+        self.M += white.swapaxes(-1, -2) @ white
+        self.energy += np.square(self.held[..., 0]).sum(2)
+        self.held[...], self.count[...] = 0.0, 0
 
     def normals(self, here: np.ndarray, where: tuple[tuple[int, int, int], ...]) -> list[Normal]:
         """One for each noise model; `here` (T, S, 8): which readings there were. In units of the unknowns."""
