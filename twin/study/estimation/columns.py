@@ -156,9 +156,10 @@ def columns(
     catalogue: dict[str, type[Effect]],
     at: dict[str, float] | None = None,
     dtype: type = np.float64,
+    same: Mapping[int, tuple[np.ndarray, np.ndarray]] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at`
-    label -> value)."""
+    label -> value). `same`: columns that are known already, (N, 3) and (N, 8) by their places."""
     kept = KeptForces()
     s, acceleration = sailing(track, model, kept)
     reading = readings(s, model)
@@ -169,6 +170,9 @@ def columns(
         rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {},
     )
     for j, unknown in enumerate(unknowns):
+        if same and j in same:
+            A[:, :, j], R[:, :, j] = same[j]
+            continue
         if unknown.owner == ROUGH:
             A[:, :, j] = missed[unknown.name]
             continue

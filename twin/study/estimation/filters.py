@@ -27,19 +27,20 @@ LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 @dataclass(frozen=True)
 class Stretches:
-    """Segments begun together, of T steps and S of them. What is not there (a reading, a segment's end) shows
-    nothing: its rows are zero."""
+    """Segments begun together, of T steps and S of them, with K readings at most (of the 8 those that there
+    are at all; all where a receiver errs). What is not there (a reading, a segment's end) shows nothing: its
+    rows are zero."""
 
     F: np.ndarray  # (T, S, 11, 11)
-    H: np.ndarray  # (T, S, 8, 11): no instrument shows a wave by itself
-    here: np.ndarray  # (T, S, 8) which readings there were
-    # (T, S, 8, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of
+    H: np.ndarray  # (T, S, K, 11): no instrument shows a wave by itself
+    here: np.ndarray  # (T, S, K) which readings there were
+    # (T, S, K, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of
     # it
     shown: np.ndarray
     # (T, S, 6, 1 + P) what a step adds to the motion: the model's defect, and what one of each unknown pushes
     pushed: np.ndarray
     spread: np.ndarray  # (T, S, 6, 3) accelerations to what they add to the motion in a step
-    turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
+    turns: dict[int, np.ndarray]  # column -> (T, S, K, K)
     bends: np.ndarray | None = None  # (T, S, 3, 6, P)
     swing: np.ndarray | None = None  # (T, S, 12, 12) what takes the waves a step on
     # (T, S, 2, 2) from north and east to the readings of velocity over ground, where a receiver errs
@@ -50,7 +51,7 @@ class Stretches:
 class NoiseVariances:
     """Of every noise model (W) and every segment: variances."""
 
-    reading: np.ndarray  # (T, W, S, 8)
+    reading: np.ndarray  # (T, W, S, K)
     new: np.ndarray  # (T, W, S, 11) of each of the ship's states, in one step
     waves: np.ndarray | None = None  # (T, S, 12, 12) of the waves' own, in one step
     error: "ReceiverError | None" = None
@@ -90,8 +91,8 @@ class Filters:
         )
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """By the readings of step k; gives the innovations with their tangents (W, R, 8, 1 + P), in
-        standard deviations, the diagonal of the root of their covariance (W, R, 8), and which R of the
+        """By the readings of step k; gives the innovations with their tangents (W, R, K, 1 + P), in
+        standard deviations, the diagonal of the root of their covariance (W, R, K), and which R of the
         segments had a reading (index); the others stay as they are. RunsAway where their covariance is
         none."""
         some = np.flatnonzero(self.stretches.here[k].any(-1))

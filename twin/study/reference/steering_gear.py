@@ -12,6 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.physics.actuators import KINDS
+from twin.physics.actuators.kinds import OF_WAKE
 from twin.physics.effect import Effect, Lag
 from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
@@ -26,6 +28,8 @@ from twin.study.track.track import Track
 SLOWER, LATER = (0.5, 1.0, 2.0, 4.0), (1.0, 2.0, 4.0)
 # log evidence, tempered, that a gear must add: where the rudder itself was recorded it adds nothing at all
 GEAR_LOG_BAYES = 20.0
+MASSES = {"X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot"}
+RUDDER_READS = {"K_T0", "K_T1", *OF_WAKE}
 Gears = tuple[type[Effect], ...]  # of like actuators
 
 
@@ -127,14 +131,33 @@ def _geared(
     def with_gear(later: float, slower: float) -> Model:
         return model.but(*(_times(gear.plausible(model.ship), later, slower) for gear in gears))
 
+    same = _ahead_of(gears, unknowns, model.ship)
+    first = [linearise(t, model.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
+
     def probable(m: Model) -> float:
-        lines = [linearise(t, m.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
+        lines = [
+            linearise(t, m.without_inputs(t.missing())[0], unknowns, known, like=line, same=same)
+            for t, line in zip(tracks, first, strict=True)
+        ]
         return evidence(innovate(lines, [NoiseModel()])[0], sd) / temper
 
-    none = (probable(model), 0.0, 0.0)
+    none = (evidence(innovate(first, [NoiseModel()])[0], sd) / temper, 0.0, 0.0)
     _, _, slower = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in SLOWER))
     score, later, slower = max(slow, *((probable(with_gear(k, slower)), k, slower) for k in LATER))
     return with_gear(later, slower) if score > none[0] + GEAR_LOG_BAYES else model
+
+
+def _ahead_of(gears: Gears, unknowns: Sequence[Unknown], ship: ShipLike) -> list[int]:
+    """Places of the core's numbers that do the same whatever these gears do: those that neither change the
+    mass, by which every force is divided, nor what the actuators behind the gears make of their orders."""
+    behind = [ship.actuator(g.actuator) for g in gears if issubclass(g, OfActuator)]
+    reads = {name for a in behind for name in KINDS[a.kind].reads} if behind else RUDDER_READS
+    names, own = MASSES | reads, tuple(f"{a.name}." for a in behind)
+    return [
+        j
+        for j, u in enumerate(unknowns)
+        if u.owner == "core" and not any(n in names or n.startswith(own) for n in u.names)
+    ]
 
 
 def _times(gear: Effect, later: float, slower: float) -> Effect:
