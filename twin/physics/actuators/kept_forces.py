@@ -1,7 +1,8 @@
 """Forces of actuators along one motion, each worked out once: of many models that differ in one number, most
 actuators read none of it and give what they gave.
 
-For arrays over time, where a force takes hundreds of times as long as to see that nothing of it has changed."""
+For arrays over time, where a force takes a hundred times as long as to see that nothing of it has
+changed."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -147,10 +147,7 @@ def _turns(lines: Sequence[Linear], where: Where, rows: np.ndarray) -> dict[int,
     none, there = np.zeros((1, rows.size, rows.size), np.float32), np.ix_(rows, rows)
     return {
         j: abreast(
-            [
-                x.turns[j][:, *there] if j in x.turns else np.repeat(none, len(x.track), axis=0)
-                for x in lines
-            ],
+            [x.turns[j][:, *there] if j in x.turns else np.repeat(none, len(x.track), axis=0) for x in lines],
             where,
         )
         for j in some
