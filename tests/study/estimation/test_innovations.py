@@ -8,7 +8,7 @@ import pytest
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.study.estimation.columns import core_unknowns, effect_unknowns
-from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
 from twin.study.estimation.linear import linearise
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.track.segments import read_parts, segments
@@ -24,6 +24,30 @@ def test_floors_side_by_side_are_floors_one_at_a_time(judged):
         alone = innovate(lines, [floor])[0]
         np.testing.assert_allclose(both.A, alone.A, rtol=1e-9)
         np.testing.assert_allclose(both.logdet, alone.logdet, rtol=1e-9)
+
+
+def test_groups_of_lines_side_by_side_are_as_each_alone(judged, monkeypatch):
+    """Test: three groups, of one voyage, of two halves and of the voyage again, two of them side by side.
+    Expected: each as it is alone, and no more asked for than are filtered together."""
+    t, model, unknowns = judged
+    whole = linearise(t, model, unknowns, catalogue())
+    halves = [linearise(t.part(*cut), model, unknowns, catalogue()) for cut in ((0, 700), (700, len(t)))]
+    groups, floors, asked = [[whole], halves, [whole]], [NoiseModel(), NoiseModel().scaled(4.0)], []
+    count = len(segments([t], float(model.ship.scale("time"))))
+    monkeypatch.setattr("twin.study.estimation.innovations.ABREAST", count + 1)
+
+    def generated():
+        for group in groups:
+            asked.append(group)
+            yield group
+
+    each = innovate_each(generated(), floors)
+    for k, (group, normals) in enumerate(zip(groups, each, strict=True)):
+        assert len(asked) == (2, 2, 3)[k]
+        for normal, alone in zip(normals, innovate(group, floors), strict=True):
+            np.testing.assert_allclose(normal.A, alone.A, rtol=1e-6)
+            np.testing.assert_allclose(normal.ee, alone.ee, rtol=1e-6)
+            assert np.array_equal(normal.count, alone.count)
 
 
 def test_where_a_segment_has_no_reading_nothing_is_corrected_and_the_others_are_as_ever(judged):

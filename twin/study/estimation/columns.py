@@ -15,7 +15,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation import form, rough, wave_induced
-from twin.study.estimation.respond import faulty, moving, readings, respond, sailing
+from twin.study.estimation.respond import accelerations, faulty, moving, readings, respond, sailing
 from twin.study.track.track import Track
 
 
@@ -197,6 +197,9 @@ def columns(
         other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
         if fault:  # it changes what is read, and not how the ship moves
             R[:, :, j] = (readings(s, other) - reading) / step
+            continue
+        if unknown.owner == "core" and not model.faults:  # a right instrument shows nothing of it
+            A[:, :, j] = (accelerations(track, other, kept) - acceleration) / step
             continue
         a, r = respond(track, other, kept)
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step

@@ -13,7 +13,7 @@ Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy
     discrepancy).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,6 +43,8 @@ from twin.study.track import waves
 from twin.study.track.motion_channels import READINGS
 from twin.study.track.segments import segments
 from twin.study.track.track import Track
+
+ABREAST = 64  # segments, of which more side by side take as much longer as they are more
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,32 @@ def innovate(
     return sums.normals(stretches.here, tuple(where))
 
 
+def innovate_each(
+    groups: Iterable[Sequence[Linear]], noise_models: Sequence[NoiseModel]
+) -> Iterator[list[Normal]]:
+    """`innovate` of each of these groups of lines, some of them side by side: a step of few segments takes as
+    long as one of many. No more groups are asked for than are filtered together."""
+    held: list[Sequence[Linear]] = []
+    for lines in groups:
+        held.append(lines)
+        tracks = [line.track for some in held for line in some]
+        if len(segments(tracks, float(lines[0].model.ship.scale("time")))) >= ABREAST:
+            yield from _apart(held, noise_models)
+            held = []
+    if held:
+        yield from _apart(held, noise_models)
+
+
+def _apart(groups: Sequence[Sequence[Linear]], noise_models: Sequence[NoiseModel]) -> list[list[Normal]]:
+    """Filtered together, and told of each group by itself."""
+    if len(groups) == 1:
+        return [innovate(groups[0], noise_models)]
+    of = np.repeat(np.arange(len(groups)), [len(lines) for lines in groups])
+    normals = innovate([line for lines in groups for line in lines], noise_models)
+    group = of[[track for track, _, _ in normals[0].where]]
+    return [[n.only(group == g) for n in normals] for g in range(len(groups))]
+
+
 def _told(lines: Sequence[Linear]) -> np.ndarray:
     """(K,) index of the readings that there are at all."""
     return np.flatnonzero(np.any([np.isfinite(x.e).any(0) for x in lines], axis=0))
@@ -144,10 +172,10 @@ def _erring(line: Linear) -> np.ndarray:
 def _turns(lines: Sequence[Linear], where: Where, rows: np.ndarray) -> dict[int, np.ndarray]:
     """Of every column that any of the tracks has; nothing on one whose instruments lack what is at fault."""
     some = {j for x in lines for j in x.turns}
-    none, there = np.zeros((1, rows.size, rows.size), np.float32), np.ix_(rows, rows)
+    none, there = np.zeros((1, rows.size, rows.size), np.float32), (slice(None), rows[:, None], rows)
     return {
         j: abreast(
-            [x.turns[j][:, *there] if j in x.turns else np.repeat(none, len(x.track), axis=0) for x in lines],
+            [x.turns[j][there] if j in x.turns else np.repeat(none, len(x.track), axis=0) for x in lines],
             where,
         )
         for j in some

@@ -34,9 +34,9 @@ def sailing(track: Track, model: Model, kept: KeptForces | None = None) -> tuple
     return s, nu_dot
 
 
-def accelerations(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) accelerations alone. In m/s2 and rad/s2: SI."""
-    return _nu_dot(track.situation(**steered(track, model)), model)
+def accelerations(track: Track, model: Model, kept: KeptForces | None = None) -> np.ndarray:
+    """(N, 3) accelerations alone. In m/s2 and rad/s2: SI. `kept`: what actuators gave along the track."""
+    return _nu_dot(track.situation(**steered(track, model, kept)), model)
 
 
 def standard(model: Model) -> np.ndarray:

@@ -20,8 +20,8 @@ from twin.physics.model import Model
 from twin.physics.ship_like import ShipLike
 from twin.study.estimation.columns import Unknown, effect_unknowns, with_values
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
-from twin.study.estimation.innovations import NoiseModel, innovate
-from twin.study.estimation.linear import linearise
+from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.track.track import Track
 
 # of the plausible gear's; the first is as fast as a large tanker's must be
@@ -134,16 +134,20 @@ def _geared(
     same = _ahead_of(gears, unknowns, model.ship)
     first = [linearise(t, model.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
 
-    def probable(m: Model) -> float:
-        lines = [
-            linearise(t, m.without_inputs(t.missing())[0], unknowns, known, like=line, same=same)
+    def lines_of(later: float, slower: float) -> list[Linear]:
+        other = with_gear(later, slower)
+        return [
+            linearise(t, other.without_inputs(t.missing())[0], unknowns, known, like=line, same=same)
             for t, line in zip(tracks, first, strict=True)
         ]
-        return evidence(innovate(lines, [NoiseModel()])[0], sd) / temper
+
+    def likeliest(gears: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
+        each = innovate_each((lines_of(*gear) for gear in gears), [NoiseModel()])
+        return max((evidence(n, sd) / temper, *gear) for (n,), gear in zip(each, gears, strict=True))
 
     none = (evidence(innovate(first, [NoiseModel()])[0], sd) / temper, 0.0, 0.0)
-    _, _, slower = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in SLOWER))
-    score, later, slower = max(slow, *((probable(with_gear(k, slower)), k, slower) for k in LATER))
+    _, _, slower = slow = max(none, likeliest([(0.0, k) for k in SLOWER]))
+    score, later, slower = max(slow, likeliest([(k, slower) for k in LATER]))
     return with_gear(later, slower) if score > none[0] + GEAR_LOG_BAYES else model
 
 
