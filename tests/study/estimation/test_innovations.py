@@ -76,7 +76,7 @@ def test_readings_that_no_voyage_has_change_nothing(judged, monkeypatch):
     shown[:, 6:] = np.nan
     lines = [linearise(replace(t, measured=shown), model, unknowns, catalogue())]
     six = innovate(lines, [NoiseModel()])[0]
-    monkeypatch.setattr("twin.study.estimation.innovations._told", lambda lines: np.arange(8))
+    monkeypatch.setattr("twin.study.estimation.innovations._rows", lambda lines: np.arange(8))
     eight = innovate(lines, [NoiseModel()])[0]
     np.testing.assert_allclose(six.A, eight.A, rtol=1e-5, atol=1e-5 * eight.A.max())
     np.testing.assert_allclose(six.energy, eight.energy, rtol=1e-5)

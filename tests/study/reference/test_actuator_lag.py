@@ -19,10 +19,9 @@ from twin.study.reference.nuisance import TEMPER
 from twin.study.reference.steering_gear import (
     LATER,
     SLOWER,
-    _ahead_of,
-    _times,
     gear_unknowns,
     gears_of,
+    not_behind,
     with_or_without_gear,
 )
 from twin.study.track.track import track
@@ -74,16 +73,17 @@ def test_what_a_lag_leaves_as_it_is_is_what_is_taken_over_from_the_model_without
     ship = ship_of(kind)
     model, t = Model.of(ship), track(sailed(kind, 1, SECONDS, BOAT_SEED), ship)
     unknowns, gears = core_unknowns(model), gears_of(ship)[0]
-    behind = model.but(*(_times(g.plausible(ship), 2.0, 2.0) for g in gears))
+    slow = (g.plausible(ship) for g in gears)
+    behind = model.but(*(lag.but(delay=2.0 * lag.delay, ease=2.0 * lag.ease) for lag in slow))
     before, after = (linearise(t, m, unknowns, of_ship(ship)) for m in (model, behind))
-    same = _ahead_of(gears, unknowns, ship)
+    same = not_behind(gears, unknowns, ship)
     assert "N_ur" in (names := [unknowns[j].name for j in same])
     assert "X_udot" not in names and not any(n.startswith(gears[0].actuator) for n in names)
     for j in range(len(unknowns)):
         a, b = before.A[:, :, j], after.A[:, :, j]
         change = np.abs(a - b).max() / max(np.abs(a).max(), 1e-12)
         assert j not in same or change < 1e-6, unknowns[j].label
-    like = linearise(t, behind, unknowns, of_ship(ship), like=before, same=same)
+    like = linearise(t, behind, unknowns, of_ship(ship), like=before.only(np.array(same)), same=same)
     np.testing.assert_allclose(like.A, after.A, rtol=1e-5, atol=1e-6 * np.abs(after.A).max())
     np.testing.assert_array_equal(like.e, after.e)
     assert np.abs(before.A - after.A).max() > 1e-3 * np.abs(after.A).max()

@@ -94,7 +94,7 @@ def innovate(
     side; the normal equations for each noise model."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
     erring = any(n.velocity_error > 0.0 for n in noise_models)
-    rows = np.arange(len(READINGS)) if erring else _told(lines)
+    rows = np.arange(len(READINGS)) if erring else _rows(lines)
     stretches = _stretches(lines, where, rows, erring)
     noise = _noise(lines, noise_models, where, rows)
     filters, sums = (
@@ -133,7 +133,7 @@ def _apart(groups: Sequence[Sequence[Linear]], noise_models: Sequence[NoiseModel
     return [[n.only(group == g) for n in normals] for g in range(len(groups))]
 
 
-def _told(lines: Sequence[Linear]) -> np.ndarray:
+def _rows(lines: Sequence[Linear]) -> np.ndarray:
     """(K,) index of the readings that there are at all."""
     return np.flatnonzero(np.any([np.isfinite(x.e).any(0) for x in lines], axis=0))
 

@@ -83,15 +83,15 @@ def linearise(
     """Everything about one track that does not depend on the noise model (`at`: values of unknowns that the
     model already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these
     are judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where
-    the filter believes it to be. `like`: the same track and unknowns, about another model in which those at
-    the places `same` do the same."""
+    the filter believes it to be. `like`: the same track about another model, with only
+    those unknowns, at the places `same`, that do the same in this one."""
     shown, track = track, undone(track, model)
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()
     reading = later(track, respond(track, prompt)[1], late_s)
     # whose column is taken off the readings in full digits
     late = any(u.owner == LATE and u.label in (at or {}) for u in unknowns)
-    known = {} if like is None else {j: (like.A[:, :, j], like.R[:, :, j]) for j in same}
+    known = {} if like is None else {j: (like.A[:, :, k], like.R[:, :, k]) for k, j in enumerate(same)}
     A, R = columns(track, model, unknowns, catalogue, at, np.float64 if late else np.float32, known)
     bent = _bends(track, model, unknowns, catalogue, at) if exact else None
     turned = {} if smooth else turns(track, model, unknowns, catalogue, at)

@@ -58,8 +58,8 @@ class Sums:
         self.rows = rows
 
     def add(self, white: np.ndarray, root: np.ndarray, some: np.ndarray) -> None:
-        """One step of some segments (R,): innovations with their tangents (W, R, K, 1 + P), in standard
-        deviations, and the diagonal of the root of their covariance (W, R, K)."""
+        """One step of some segments (R,): innovations with their tangents (W, R, K, 1 + P) in units of their
+        standard deviations, and the diagonal of the root of their covariance (W, R, K)."""
         if not some.size:
             return
         self.held[:, some, self.count[some]] = white

@@ -131,8 +131,10 @@ def _geared(
     def with_gear(later: float, slower: float) -> Model:
         return model.but(*(_times(gear.plausible(model.ship), later, slower) for gear in gears))
 
-    same = _ahead_of(gears, unknowns, model.ship)
+    same = not_behind(gears, unknowns, model.ship)
     first = [linearise(t, model.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
+    none = (evidence(innovate(first, [NoiseModel()])[0], sd) / temper, 0.0, 0.0)
+    first = [line.only(np.array(same, int)) for line in first]
 
     def lines_of(later: float, slower: float) -> list[Linear]:
         other = with_gear(later, slower)
@@ -145,13 +147,12 @@ def _geared(
         each = innovate_each((lines_of(*gear) for gear in gears), [NoiseModel()])
         return max((evidence(n, sd) / temper, *gear) for (n,), gear in zip(each, gears, strict=True))
 
-    none = (evidence(innovate(first, [NoiseModel()])[0], sd) / temper, 0.0, 0.0)
     _, _, slower = slow = max(none, likeliest([(0.0, k) for k in SLOWER]))
     score, later, slower = max(slow, likeliest([(k, slower) for k in LATER]))
     return with_gear(later, slower) if score > none[0] + GEAR_LOG_BAYES else model
 
 
-def _ahead_of(gears: Gears, unknowns: Sequence[Unknown], ship: ShipLike) -> list[int]:
+def not_behind(gears: Gears, unknowns: Sequence[Unknown], ship: ShipLike) -> list[int]:
     """Places of the core's numbers that do the same whatever these gears do: those that neither change the
     mass, by which every force is divided, nor what the actuators behind the gears make of their orders."""
     behind = [ship.actuator(g.actuator) for g in gears if issubclass(g, OfActuator)]
