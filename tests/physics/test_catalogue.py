@@ -12,7 +12,7 @@ import pytest
 from twin.cli import main
 from twin.errors import SettingsError
 from twin.physics.effects import BUILT_IN, UNNAMED, find
-from twin.report.catalogue import overview, page, sentence
+from twin.report.catalogue import overview, page
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = (ROOT / "docs" / "tutorials" / "own-effect.md").read_text(encoding="utf-8")
@@ -63,7 +63,7 @@ def blocks():
 def test_what_is_known_by_its_form_alone_is_told_but_never_added(Kind, capsys):
     assert main(["effects", Kind.__name__]) == 0
     said = capsys.readouterr().out
-    assert sentence(Kind)[:30] in said and "twin add" not in said
+    assert Kind.sentence()[:30] in said and "twin add" not in said
     with pytest.raises(SettingsError, match=f"no part of a ship file.*twin effects {Kind.__name__}"):
         find(Kind.__name__)
 

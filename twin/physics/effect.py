@@ -163,6 +163,11 @@ class Effect:
         return tuple(Param(f.name, **f.metadata) for f in fields(cls))  # type: ignore[arg-type]
 
     @classmethod
+    def sentence(cls) -> str:
+        """What an engineer would say of it in a report."""
+        return " ".join((cls.__doc__ or "").split())
+
+    @classmethod
     def plausible(cls, ship: ShipLike) -> "Effect":
         """The effect at its published or typical size on this ship."""
         return cls(**{p.name: p.default * p.scale(ship) for p in cls.params()})

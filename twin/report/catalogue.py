@@ -29,11 +29,6 @@ SCALES_SAID = (
 )
 
 
-def sentence(effect: type[Effect]) -> str:
-    """What an engineer would say of it in a report."""
-    return " ".join((effect.__doc__ or "").split())
-
-
 def formula(effect: type[Effect]) -> str:
     """The head of its file: what it means, and the equation."""
     return inspect.cleandoc(sys.modules[effect.__module__].__doc__ or "")
@@ -84,7 +79,7 @@ def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
     return {
         "name": effect.__name__,
         "kind": effect.kind,
-        "doc": sentence(effect),
+        "doc": effect.sentence(),
         "formula": formula(effect),
         "needs": inputs(effect),
         "needs_ship": list(effect.needs_ship),
@@ -102,7 +97,7 @@ def overview(effects: list[type[Effect]], width: int) -> str:
     for kind, means in KINDS.items():
         lines += [bold(kind) + f"  {means}"]
         for effect in (e for e in effects if e.kind == kind):
-            text = textwrap.wrap(sentence(effect), width - name_width - 2)
+            text = textwrap.wrap(effect.sentence(), width - name_width - 2)
             lines += [
                 f"  {effect.__name__:{name_width}}{text[0]}",
                 *(" " * (name_width + 2) + more for more in text[1:]),
@@ -116,7 +111,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     lines = [
         f"{bold(effect.__name__)}  {effect.kind}: {KINDS[effect.kind]}",
         "",
-        *textwrap.wrap(sentence(effect), width),
+        *textwrap.wrap(effect.sentence(), width),
         "",
     ]
     lines += [f"  {line}".rstrip() for line in formula(effect).splitlines()] + [""]
@@ -207,7 +202,7 @@ def _entry(effect: type[Effect]) -> list[str]:
     return [
         f"### {effect.__name__}",
         "",
-        sentence(effect),
+        effect.sentence(),
         "",
         "```text",
         formula(effect),

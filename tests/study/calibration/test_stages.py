@@ -54,6 +54,13 @@ def test_a_core_that_is_fitted_again_is_counted_once_more():
     assert said[7].startswith(f"{again} (8 of 16")
 
 
+def test_a_core_that_is_begun_again_half_way_is_counted_without_its_other_half():
+    again, half = "fitting again, with a compass that deviates with the heading", [*FIT_STAGES][:5]
+    said = run([*half, again, *CORE_STAGES, PATH, BASELINE], None)
+    assert said[5].startswith(f"{again} (6 of 14")
+    assert said[-1].startswith(f"{BASELINE} (14 of 14")
+
+
 def test_a_stage_that_is_left_out_is_not_waited_for():
     said = run([*FIT_STAGES, BASELINE], None)
     assert said[-1].startswith(f"{BASELINE} (9 of 9")

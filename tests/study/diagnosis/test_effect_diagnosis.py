@@ -9,7 +9,7 @@ import pytest
 
 from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
-from twin.physics.effects import catalogue
+from twin.physics.effects import catalogue, find
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.effect_diagnosis import diagnose
@@ -43,6 +43,14 @@ def test_the_answer_has_the_keys_of_the_contract(monday):
     } <= first.keys()
     assert {"name", "value", "low95", "high95", "unit"} <= first["parameters"][0].keys()
     assert first["typical_force"].keys() == {"X_N", "Y_N", "N_Nm"}
+
+
+def test_what_an_effect_is_is_said_to_the_end_of_its_sentence(monday):
+    """Every sentence of the catalogue ends, also where its docstring runs over two lines."""
+    for row in monday["candidates"]:
+        assert row["says"] == find(row["effect"]).sentence() and row["says"].endswith(".")
+    two_lines = [e.sentence() for e in catalogue().values() if "\n" in e.__doc__.strip()]
+    assert two_lines and all(s.endswith(".") and "\n" not in s for s in two_lines)
 
 
 def test_the_size_comes_with_an_interval_and_a_force_in_newtons(monday):

@@ -8,7 +8,7 @@ import pytest
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.study.estimation.columns import core_unknowns, effect_unknowns
-from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
 from twin.study.estimation.linear import linearise
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.track.segments import read_parts, segments
@@ -24,6 +24,64 @@ def test_floors_side_by_side_are_floors_one_at_a_time(judged):
         alone = innovate(lines, [floor])[0]
         np.testing.assert_allclose(both.A, alone.A, rtol=1e-9)
         np.testing.assert_allclose(both.logdet, alone.logdet, rtol=1e-9)
+
+
+def test_groups_of_lines_side_by_side_are_as_each_alone(judged, monkeypatch):
+    """Test: three groups, of one voyage, of two halves and of the voyage again, two of them side by side.
+    Expected: each as it is alone, and no more asked for than are filtered together."""
+    t, model, unknowns = judged
+    whole = linearise(t, model, unknowns, catalogue())
+    halves = [linearise(t.part(*cut), model, unknowns, catalogue()) for cut in ((0, 700), (700, len(t)))]
+    groups, floors, asked = [[whole], halves, [whole]], [NoiseModel(), NoiseModel().scaled(4.0)], []
+    count = len(segments([t], float(model.ship.scale("time"))))
+    monkeypatch.setattr("twin.study.estimation.innovations.ABREAST", count + 1)
+
+    def generated():
+        for group in groups:
+            asked.append(group)
+            yield group
+
+    each = innovate_each(generated(), floors)
+    for k, (group, normals) in enumerate(zip(groups, each, strict=True)):
+        assert len(asked) == (2, 2, 3)[k]
+        for normal, alone in zip(normals, innovate(group, floors), strict=True):
+            np.testing.assert_allclose(normal.A, alone.A, rtol=1e-6)
+            np.testing.assert_allclose(normal.ee, alone.ee, rtol=1e-6)
+            assert np.array_equal(normal.count, alone.count)
+
+
+def test_where_a_segment_has_no_reading_nothing_is_corrected_and_the_others_are_as_ever(judged):
+    """Test: every second step read, of one segment the even ones and of the others the odd ones, so that at each
+    step some have nothing. Expected: each as it is alone, where its steps have either all or none."""
+    t, model, unknowns = judged
+    where = segments([t], float(model.ship.scale("time")))
+    shown, read = t.measured.copy(), np.arange(len(t)) % 2 == 0
+    for i, (_, a, b) in enumerate(where):
+        shown[a:b][read[a:b] == bool(i % 2)] = np.nan
+    sparse = replace(t, measured=shown)
+    together = innovate([linearise(sparse, model, unknowns, catalogue())], [NoiseModel()])[0]
+    assert 0 < together.count.sum() < 0.6 * np.isfinite(t.measured).sum()
+    for i, (_, a, b) in enumerate(where):
+        only = replace(sparse, whole=sparse.whole & (np.arange(len(t)) >= a) & (np.arange(len(t)) < b))
+        alone = innovate([linearise(only, model, unknowns, catalogue())], [NoiseModel()])[0]
+        np.testing.assert_allclose(alone.A[0], together.A[i], rtol=1e-5, atol=1e-5 * alone.A.max())
+        assert alone.ee[0] == pytest.approx(together.ee[i], rel=1e-5)
+        assert alone.logdet[0] == pytest.approx(together.logdet[i], rel=1e-9)
+
+
+def test_readings_that_no_voyage_has_change_nothing(judged, monkeypatch):
+    """Test: without a log, filtered with the six readings that there are and with two empty ones beside them."""
+    t, model, unknowns = judged
+    shown = t.measured.copy()
+    shown[:, 6:] = np.nan
+    lines = [linearise(replace(t, measured=shown), model, unknowns, catalogue())]
+    six = innovate(lines, [NoiseModel()])[0]
+    monkeypatch.setattr("twin.study.estimation.innovations._rows", lambda lines: np.arange(8))
+    eight = innovate(lines, [NoiseModel()])[0]
+    np.testing.assert_allclose(six.A, eight.A, rtol=1e-5, atol=1e-5 * eight.A.max())
+    np.testing.assert_allclose(six.energy, eight.energy, rtol=1e-5)
+    assert six.energy.shape == (len(six.where), 8) and not six.energy[:, 6:].any()
+    np.testing.assert_allclose(six.logdet, eight.logdet, rtol=1e-9)
 
 
 def test_innovations_of_a_calibrated_ship_are_no_larger_than_promised(judged):

@@ -3,6 +3,7 @@ and becomes a part of the boat's model. The boats sail by equations that share n
 
 import json
 
+import numpy as np
 import pytest
 
 from bench.small_boats import sailed, ship_of
@@ -13,8 +14,16 @@ from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
 from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.estimation.columns import core_unknowns
+from twin.study.estimation.linear import linearise
 from twin.study.reference.nuisance import TEMPER
-from twin.study.reference.steering_gear import LATER, SLOWER, gear_unknowns, gears_of, with_or_without_gear
+from twin.study.reference.steering_gear import (
+    LATER,
+    SLOWER,
+    gear_unknowns,
+    gears_of,
+    not_behind,
+    with_or_without_gear,
+)
 from twin.study.track.track import track
 
 BOAT, BOAT_SEED, SECONDS = "thrusters", 3, 60.0
@@ -56,6 +65,28 @@ def test_of_thrusters_that_hardly_lag_nothing_is_believed():
 def test_like_actuators_stand_together_and_others_alone():
     assert [len(g) for g in gears_of(ship_of("screws and bow thruster"))] == [2, 1]
     assert [[e.__name__ for e in g] for g in gears_of(load("kvlcc2"))] == [["SteeringLag"]]
+
+
+@pytest.mark.parametrize("kind", ["screws and bow thruster", "azimuths"])
+def test_what_a_lag_leaves_as_it_is_is_what_is_taken_over_from_the_model_without_it(kind):
+    """Expected: the columns that are not made anew are the same behind a gear, and those of its actuators are not."""
+    ship = ship_of(kind)
+    model, t = Model.of(ship), track(sailed(kind, 1, SECONDS, BOAT_SEED), ship)
+    unknowns, gears = core_unknowns(model), gears_of(ship)[0]
+    slow = (g.plausible(ship) for g in gears)
+    behind = model.but(*(lag.but(delay=2.0 * lag.delay, ease=2.0 * lag.ease) for lag in slow))
+    before, after = (linearise(t, m, unknowns, of_ship(ship)) for m in (model, behind))
+    same = not_behind(gears, unknowns, ship)
+    assert "N_ur" in (names := [unknowns[j].name for j in same])
+    assert "X_udot" not in names and not any(n.startswith(gears[0].actuator) for n in names)
+    for j in range(len(unknowns)):
+        a, b = before.A[:, :, j], after.A[:, :, j]
+        change = np.abs(a - b).max() / max(np.abs(a).max(), 1e-12)
+        assert j not in same or change < 1e-6, unknowns[j].label
+    like = linearise(t, behind, unknowns, of_ship(ship), like=before.only(np.array(same)), same=same)
+    np.testing.assert_allclose(like.A, after.A, rtol=1e-5, atol=1e-6 * np.abs(after.A).max())
+    np.testing.assert_array_equal(like.e, after.e)
+    assert np.abs(before.A - after.A).max() > 1e-3 * np.abs(after.A).max()
 
 
 def test_the_numbers_of_a_shared_lag_are_asked_once_and_of_lags_that_differ_each():

@@ -43,6 +43,7 @@ from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
 
 from .actuator_channels import CHANNELS_OF
+from .kept_forces import KeptOrders
 from .kinds import KINDS
 
 # By how much the thrust of healthy actuators of one make usually differs (standard deviation): a propeller's
@@ -159,10 +160,13 @@ class Actuator:
     def force(self, orders: Mapping[str, Number], u: Number, v: Number, r: Number, ship: ShipLike) -> Tau:
         """(X [N], Y [N], N [N m]) in body axes; `orders`: what is recorded of all actuators, `name.attribute`
         in SI; (u, v, r): the ship through the water."""
-        return self._of_kind(self, orders, u, v, r, ship)
+        if type(orders) is KeptOrders:
+            return orders.kept.force(self, orders, u, v, r, ship)
+        return self.of_kind(self, orders, u, v, r, ship)
 
     @cached_property
-    def _of_kind(self) -> Any:
+    def of_kind(self) -> Any:
+        """What its kind gives, whatever was given before."""
         return KINDS[self.kind].force
 
     @cached_property

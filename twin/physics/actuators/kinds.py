@@ -17,6 +17,14 @@ class OneActuator(Protocol):
     """What a kind reads of an actuator: its numbers, what is recorded of it, and the ship's with its own."""
 
     @property
+    def kind(self) -> str:
+        """One of KINDS."""
+
+    @property
+    def of_kind(self) -> "ForceOf":
+        """What its kind gives."""
+
+    @property
     def x(self) -> Number:
         """Ahead of midship [m]."""
 
@@ -104,15 +112,19 @@ class OneActuator(Protocol):
         """The ship's numbers with this propeller and rudder in place of its own."""
 
 
+ForceOf = Callable[[OneActuator, Orders, Number, Number, Number, ShipLike], core.Tau]
+
+
 class Kind(NamedTuple):
     """`needs`: attributes that must be recorded beside one that says how hard it pushes; `legs`: whether what
-    carries it turns with it."""
+    carries it turns with it; `reads`: the ship's derivatives on which its force depends."""
 
-    force: Callable[[OneActuator, Orders, Number, Number, Number, ShipLike], core.Tau]
+    force: ForceOf
     needs: tuple[str, ...]
     may: tuple[str, ...]
     doc: str
     legs: bool = False
+    reads: tuple[str, ...] = ()
 
 
 def push(a: OneActuator, orders: Orders, u_a: Number, ship: ShipLike) -> Number:
@@ -239,9 +251,11 @@ def propeller(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, s
     return X, Y, N - a.y * X
 
 
+OF_WAKE = ("t", "w", "epsilon", "kappa", "C_L", "t_R", "a_H", "x_H", "gamma_v", "gamma_r", "gamma_a")
+IN_WAKE = "on a shaft, with or without a rudder in its slipstream"
 KINDS: dict[str, Kind] = {
-    "propeller": Kind(propeller, (), ("angle",), "on a shaft, with or without a rudder in its slipstream"),
-    "controllable_pitch": Kind(propeller, ("pitch",), ("angle",), "a shaft whose blades turn"),
+    "propeller": Kind(propeller, (), ("angle",), IN_WAKE, reads=OF_WAKE),
+    "controllable_pitch": Kind(propeller, ("pitch",), ("angle",), "a shaft whose blades turn", reads=OF_WAKE),
     "fixed_thruster": Kind(fixed, (), (), "pushes along the ship"),
     "azimuth": Kind(azimuth, ("angle",), (), "turns all round; its angle: where it pushes the ship to", True),
     "waterjet": Kind(steered, ("angle",), (), "its angle is counted like a rudder's"),

@@ -11,7 +11,6 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.calibration.usual import significantly_there
-from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.start import waves_on
 from twin.study.reference.derivatives import Derivative, noted
@@ -44,7 +43,6 @@ class Core:
     # of the parts that were searched and of the antenna, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
     searched: tuple[type[Effect], ...]
-    curve: tuple[Unknown, ...]  # of the compass's deviation, where the voyages clearly ask for one beside it
     antenna: Effect | None  # where it was found, if not where the ship file has it
     noise_model: NoiseModel
     temper: float

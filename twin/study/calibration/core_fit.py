@@ -38,6 +38,17 @@ class Calibrated:
 
 
 @dataclass(frozen=True)
+class RoughCore:
+    """A core fitted before the noise model is known."""
+
+    ship: Ship
+    tracks: list[Track]  # with what waves do to it taken for that
+    fit: Fit
+    curve: tuple[Unknown, ...]  # of the compass's deviation, fitted beside it
+    asked: tuple[Unknown, ...]  # of that deviation, where the voyages clearly ask for it and it was not
+
+
+@dataclass(frozen=True)
 class FittedCore:
     """A ship with its core fitted, before it is known what is usual on it."""
 
@@ -86,15 +97,10 @@ def fitted_core(
     progress("asking how the instruments go together, whatever the ship is")
     own = own_instruments(fitted, ship, progress)
     ship = own.ship
-    core = _core(sailed, ship, progress)
-    begun, curve = ship, core.curve
-    if curve:
-        progress("fitting again, with a compass that deviates with the heading")
-        begun = ship.with_effects(PARTS["compass"].absent(ship))
-        core = _core(sailed, begun, progress, curve)
+    core, curve = _beside_its_compass(sailed, ship, progress)
     if core.antenna is not None:
         progress("fitting again, with the antenna where it was found")
-        core = _with_antenna(core.antenna, sailed, begun, progress, curve)
+        core = _with_antenna(core.antenna, sailed, ship, progress, curve)
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
     chosen = best_way(
@@ -114,16 +120,35 @@ def fitted_core(
     return FittedCore(ship, core, chosen, rows, own.written)
 
 
+def _beside_its_compass(
+    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
+) -> tuple[Core, tuple[Unknown, ...]]:
+    """The core, and the numbers of the compass's deviation that were fitted beside it, if the voyages ask for
+    them."""
+    rough = _rough(sailed, ship, progress)
+    if not (curve := rough.asked):
+        return _core(rough, progress), ()
+    del rough  # its columns are large
+    progress("fitting again, with a compass that deviates with the heading")
+    return _core(_rough(sailed, _deviating(ship), progress, curve), progress), curve
+
+
+def _deviating(ship: Ship) -> Ship:
+    """The ship whose compass may deviate with the heading."""
+    return ship.with_effects(PARTS["compass"].absent(ship))
+
+
 def _with_antenna(
     first: Effect,
     sailed: Sequence[Track],
     ship: Ship,
     progress: Callable[[str], None],
-    curve: Sequence[Unknown],
+    curve: tuple[Unknown, ...],
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
     of its own, and had bent the core."""
-    found = _core(sailed, ship.with_effects(first), progress, curve)
+    begun = _deviating(ship) if curve else ship
+    found = _core(_rough(sailed, begun.with_effects(first), progress, curve), progress)
     of_antenna = type(first)
     antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
     # until predictions are better with the other (`placed`)
@@ -135,12 +160,12 @@ def _with_antenna(
     )
 
 
-def _core(
+def _rough(
     sailed: Sequence[Track],
     ship: Ship,
     progress: Callable[[str], None],
-    curve: Sequence[Unknown] = (),
-) -> Core:
+    curve: tuple[Unknown, ...] = (),
+) -> RoughCore:
     """`curve`: numbers of the compass's deviation, which the ship then has, that are as open as in any
     ship's."""
     model, known = Model.of(ship), of_ship(ship)
@@ -164,13 +189,17 @@ def _core(
     progress("testing whether wind pushed the ship")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     progress("testing whether the compass deviates with the heading")
-    asked_for = own_deviation(tracks, rough, known, TEMPER)
-    unknowns = rough.unknowns
+    return RoughCore(ship, tracks, rough, curve, own_deviation(tracks, rough, known, TEMPER))
+
+
+def _core(rough: RoughCore, progress: Callable[[str], None]) -> Core:
+    """The core under the noise model that these voyages ask for."""
+    ship, tracks, begun, unknowns = rough.ship, rough.tracks, rough.fit, rough.fit.unknowns
     progress("estimating the noise model")
-    noise_model, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
+    noise_model, temper = structural_noise(begun.lines, unknowns), temper_of(begun.normal, unknowns)
     progress("fitting again with this noise model")
-    found = fit(tracks, rough.model, unknowns, known, noise_model, temper=temper, smooth=True)
-    searched = (*searched_parts(ship), *([PARTS["compass"]] if curve else []))
+    found = fit(tracks, begun.model, unknowns, of_ship(ship), noise_model, temper=temper, smooth=True)
+    searched = (*searched_parts(ship), *([PARTS["compass"]] if rough.curve else []))
     asked = tuple(e for e in found.model.effects if type(e) in searched)
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
     parts = {e.__name__: e for e in (*searched, *PARTS.values())}
@@ -182,7 +211,6 @@ def _core(
         (*kept, *asked),
         numbers,
         searched,
-        asked_for,
         significant(found),
         noise_model,
         temper,

@@ -42,8 +42,11 @@ class Stages:
         self._at = -1
 
     def __call__(self, text: str) -> None:
-        if text.startswith(AGAIN):
-            self._plan[self._at + 1 : self._at + 1] = [(AGAIN, 0.0), *CORE_STAGES.items()]
+        if text.startswith(AGAIN):  # in place of what was left of the core as it was
+            rest = self._plan[self._at + 1 :]
+            while rest and rest[0][0] in CORE_STAGES:
+                rest = rest[1:]
+            self._plan[self._at + 1 :] = [(AGAIN, 0.0), *CORE_STAGES.items(), *rest]
         later = range(self._at + 1, len(self._plan))
         found = next((i for i in later if text.startswith(self._plan[i][0])), None)
         if found is None:

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from twin.physics.actuators import NUMBERS, OWN
+from twin.physics.actuators import NUMBERS, OWN, KeptForces
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation import form, rough, wave_induced
-from twin.study.estimation.respond import faulty, moving, readings, respond, sailing
+from twin.study.estimation.respond import accelerations, faulty, moving, readings, respond, sailing
 from twin.study.track.track import Track
 
 
@@ -156,10 +156,12 @@ def columns(
     catalogue: dict[str, type[Effect]],
     at: dict[str, float] | None = None,
     dtype: type = np.float64,
+    same: Mapping[int, tuple[np.ndarray, np.ndarray]] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at`
-    label -> value)."""
-    s, acceleration = sailing(track, model)
+    label -> value). `same`: columns that are known already, (N, 3) and (N, 8) by their places."""
+    kept = KeptForces()
+    s, acceleration = sailing(track, model, kept)
     reading = readings(s, model)
     A: np.ndarray = np.zeros((len(track), 3, len(unknowns)), dtype)
     R: np.ndarray = np.zeros((len(track), 8, len(unknowns)), dtype)
@@ -168,6 +170,9 @@ def columns(
         rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {},
     )
     for j, unknown in enumerate(unknowns):
+        if same and j in same:
+            A[:, :, j], R[:, :, j] = same[j]
+            continue
         if unknown.owner == ROUGH:
             A[:, :, j] = missed[unknown.name]
             continue
@@ -193,7 +198,10 @@ def columns(
         if fault:  # it changes what is read, and not how the ship moves
             R[:, :, j] = (readings(s, other) - reading) / step
             continue
-        a, r = respond(track, other)
+        if unknown.owner == "core" and not model.faults:  # a right instrument shows nothing of it
+            A[:, :, j] = (accelerations(track, other, kept) - acceleration) / step
+            continue
+        a, r = respond(track, other, kept)
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
 

@@ -27,19 +27,20 @@ LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 @dataclass(frozen=True)
 class Stretches:
-    """Segments begun together, of T steps and S of them. What is not there (a reading, a segment's end) shows
-    nothing: its rows are zero."""
+    """Segments begun together, of T steps and S of them, with K readings at most (of the 8 those that there
+    are at all; all where a receiver errs). What is not there (a reading, a segment's end) shows nothing: its
+    rows are zero."""
 
     F: np.ndarray  # (T, S, 11, 11)
-    H: np.ndarray  # (T, S, 8, 11): no instrument shows a wave by itself
-    here: np.ndarray  # (T, S, 8) which readings there were
-    # (T, S, 8, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of
+    H: np.ndarray  # (T, S, K, 11): no instrument shows a wave by itself
+    here: np.ndarray  # (T, S, K) which readings there were
+    # (T, S, K, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of
     # it
     shown: np.ndarray
     # (T, S, 6, 1 + P) what a step adds to the motion: the model's defect, and what one of each unknown pushes
     pushed: np.ndarray
     spread: np.ndarray  # (T, S, 6, 3) accelerations to what they add to the motion in a step
-    turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
+    turns: dict[int, np.ndarray]  # column -> (T, S, K, K)
     bends: np.ndarray | None = None  # (T, S, 3, 6, P)
     swing: np.ndarray | None = None  # (T, S, 12, 12) what takes the waves a step on
     # (T, S, 2, 2) from north and east to the readings of velocity over ground, where a receiver errs
@@ -50,7 +51,7 @@ class Stretches:
 class NoiseVariances:
     """Of every noise model (W) and every segment: variances."""
 
-    reading: np.ndarray  # (T, W, S, 8)
+    reading: np.ndarray  # (T, W, S, K)
     new: np.ndarray  # (T, W, S, 11) of each of the ship's states, in one step
     waves: np.ndarray | None = None  # (T, S, 12, 12) of the waves' own, in one step
     error: "ReceiverError | None" = None
@@ -89,32 +90,46 @@ class Filters:
             noise.error,
         )
 
-    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """By the readings of step k; gives the innovations with their tangents (W, S, 8, 1 + P), in
-        standard deviations, and the diagonal of the root of their covariance (W, S, 8). RunsAway where
-        their covariance is none."""
-        stretches, H = self.stretches, self.stretches.H[k]
-        E = stretches.shown[k] - self.H[k] @ self.X[..., SHIP, :]
-        if stretches.erring is not None:
-            E[..., GROUND, :] -= stretches.erring[k].astype(LIGHT) @ self.X[..., ERROR, :]
+    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """By the readings of step k; gives the innovations with their tangents (W, R, K, 1 + P), in
+        standard deviations, the diagonal of the root of their covariance (W, R, K), and which R of the
+        segments had a reading (index); the others stay as they are. RunsAway where their covariance is
+        none."""
+        some = np.flatnonzero(self.stretches.here[k].any(-1))
+        if some.size == self.X.shape[1]:
+            return *self._corrected(k, slice(None), self.X, self.C), some
+        X, C = self.X[:, some], self.C[:, some]
+        read = self._corrected(k, some, X, C) if some.size else (X[..., :0, :], C[..., :0, 0])
+        self.X[:, some], self.C[:, some] = X, C
+        return *read, some
+
+    def _corrected(
+        self, k: int, some: np.ndarray | slice, X: np.ndarray, C: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same of some segments, whose mean X and covariance C are corrected in place."""
+        stretches, H, shown = self.stretches, self.stretches.H[k][some], self.stretches.shown[k][some]
+        erring = None if stretches.erring is None else stretches.erring[k][some]
+        E = shown - self.H[k][some] @ X[..., SHIP, :]
+        if erring is not None:
+            E[..., GROUND, :] -= erring.astype(LIGHT) @ X[..., ERROR, :]
         if self.turned.size:
-            more = self.turns[k] @ (E[..., :1] - stretches.shown[k][..., :1])
+            more = self.turns[k][some] @ (E[..., :1] - shown[..., :1])
             E[..., self.turned] += more.reshape(*E.shape[:2], -1, E.shape[2]).swapaxes(-1, -2)
-        HC = H @ self.C[..., SHIP, :]
-        if stretches.erring is not None:
-            HC[..., GROUND, :] += stretches.erring[k] @ self.C[..., ERROR, :]
+        HC = H @ C[..., SHIP, :]
+        if erring is not None:
+            HC[..., GROUND, :] += erring @ C[..., ERROR, :]
         S = HC[..., SHIP] @ H.swapaxes(-1, -2)
-        if stretches.erring is not None:
-            S[..., GROUND] += HC[..., ERROR] @ stretches.erring[k].swapaxes(-1, -2)
-        _diagonal(S)[...] += self.unread[k]
+        if erring is not None:
+            S[..., GROUND] += HC[..., ERROR] @ erring.swapaxes(-1, -2)
+        _diagonal(S)[...] += self.unread[k][:, some]
         try:
             L = np.linalg.cholesky(S)
         except np.linalg.LinAlgError:
             raise self._runs_away(k) from None
         inverse = lower_inverse(L)
         white, V = inverse.astype(LIGHT) @ E, inverse @ HC
-        self.X += V.swapaxes(-1, -2).astype(LIGHT) @ white
-        self.C -= V.swapaxes(-1, -2) @ V
+        X += V.swapaxes(-1, -2).astype(LIGHT) @ white
+        C -= V.swapaxes(-1, -2) @ V
         return white, _diagonal(L)
 
     def advance(self, k: int) -> None:

@@ -13,7 +13,7 @@ Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy
     discrepancy).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,8 +40,11 @@ from twin.study.estimation.respond import (
     standard,
 )
 from twin.study.track import waves
+from twin.study.track.motion_channels import READINGS
 from twin.study.track.segments import segments
 from twin.study.track.track import Track
+
+ABREAST = 64  # segments, of which more side by side take as much longer as they are more
 
 
 @dataclass(frozen=True)
@@ -90,11 +93,13 @@ def innovate(
     """Filter every segment of every track (or an even choice of `most`), under every noise model, side by
     side; the normal equations for each noise model."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
-    stretches = _stretches(lines, where, any(n.velocity_error > 0.0 for n in noise_models))
-    noise = _noise(lines, noise_models, where)
+    erring = any(n.velocity_error > 0.0 for n in noise_models)
+    rows = np.arange(len(READINGS)) if erring else _rows(lines)
+    stretches = _stretches(lines, where, rows, erring)
+    noise = _noise(lines, noise_models, where, rows)
     filters, sums = (
         Filters(stretches, noise, _start(lines, noise_models, where)),
-        Sums(len(noise_models), len(where), stretches.shown.shape[-1] - 1),
+        Sums(len(noise_models), len(where), stretches.shown.shape[-1] - 1, rows),
     )
     for k in range(len(stretches.here)):
         sums.add(*filters.correct(k))
@@ -102,22 +107,54 @@ def innovate(
     return sums.normals(stretches.here, tuple(where))
 
 
-def _stretches(lines: Sequence[Linear], where: Where, erring: bool) -> Stretches:
-    e, defect = abreast([x.e for x in lines], where, np.nan), abreast([x.defect for x in lines], where)
+def innovate_each(
+    groups: Iterable[Sequence[Linear]], noise_models: Sequence[NoiseModel]
+) -> Iterator[list[Normal]]:
+    """`innovate` of each of these groups of lines, some of them side by side: a step of few segments takes as
+    long as one of many. No more groups are asked for than are filtered together."""
+    held: list[Sequence[Linear]] = []
+    for lines in groups:
+        held.append(lines)
+        tracks = [line.track for some in held for line in some]
+        if len(segments(tracks, float(lines[0].model.ship.scale("time")))) >= ABREAST:
+            yield from _apart(held, noise_models)
+            held = []
+    if held:
+        yield from _apart(held, noise_models)
+
+
+def _apart(groups: Sequence[Sequence[Linear]], noise_models: Sequence[NoiseModel]) -> list[list[Normal]]:
+    """Filtered together, and told of each group by itself."""
+    if len(groups) == 1:
+        return [innovate(groups[0], noise_models)]
+    of = np.repeat(np.arange(len(groups)), [len(lines) for lines in groups])
+    normals = innovate([line for lines in groups for line in lines], noise_models)
+    group = of[[track for track, _, _ in normals[0].where]]
+    return [[n.only(group == g) for n in normals] for g in range(len(groups))]
+
+
+def _rows(lines: Sequence[Linear]) -> np.ndarray:
+    """(K,) index of the readings that there are at all."""
+    return np.flatnonzero(np.any([np.isfinite(x.e).any(0) for x in lines], axis=0))
+
+
+def _stretches(lines: Sequence[Linear], where: Where, rows: np.ndarray, erring: bool) -> Stretches:
+    e = abreast([x.e[:, rows] for x in lines], where, np.nan)
+    defect = abreast([x.defect for x in lines], where)
     spread, here = abreast([_spread(x) for x in lines], where), np.isfinite(e)
-    shown = beside_each(np.where(here, e, 0.0), [x.R for x in lines], where)
+    shown = beside_each(np.where(here, e, 0.0), [x.R[:, rows] for x in lines], where)
     np.multiply(shown[..., 1:], np.where(here, -1.0, 0.0).astype(LIGHT)[..., None], out=shown[..., 1:])
     pushed = np.empty((*defect.shape, shown.shape[-1]), LIGHT)
     pushed[..., 0] = defect
     np.matmul(spread, abreast([x.A for x in lines], where), out=pushed[..., 1:])
     return Stretches(
         F=abreast([x.F for x in lines], where),
-        H=abreast([x.H for x in lines], where) * here[..., None],
+        H=abreast([x.H[:, rows] for x in lines], where) * here[..., None],
         here=here,
         shown=shown,
         pushed=pushed,
         spread=spread,
-        turns={j: turn * here[..., None] for j, turn in _turns(lines, where).items()},
+        turns={j: turn * here[..., None] for j, turn in _turns(lines, where, rows).items()},
         bends=None
         if lines[0].bends is None
         else abreast([x.bends for x in lines if x.bends is not None], where),
@@ -132,11 +169,15 @@ def _erring(line: Linear) -> np.ndarray:
     return np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], -2)
 
 
-def _turns(lines: Sequence[Linear], where: Where) -> dict[int, np.ndarray]:
+def _turns(lines: Sequence[Linear], where: Where, rows: np.ndarray) -> dict[int, np.ndarray]:
     """Of every column that any of the tracks has; nothing on one whose instruments lack what is at fault."""
     some = {j for x in lines for j in x.turns}
+    none, there = np.zeros((1, rows.size, rows.size), np.float32), (slice(None), rows[:, None], rows)
     return {
-        j: abreast([x.turns.get(j, np.zeros((len(x.track), 8, 8), np.float32)) for x in lines], where)
+        j: abreast(
+            [x.turns[j][there] if j in x.turns else np.repeat(none, len(x.track), axis=0) for x in lines],
+            where,
+        )
         for j in some
     }
 
@@ -145,7 +186,9 @@ def _in_waves(lines: Sequence[Linear]) -> bool:
     return any(line.track.swell is not None for line in lines)
 
 
-def _noise(lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: Where) -> NoiseVariances:
+def _noise(
+    lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: Where, rows: np.ndarray
+) -> NoiseVariances:
     """Every noise model in turn, over all segments."""
     ship, h = lines[0].model.ship, _steps(lines, where)
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
@@ -159,7 +202,7 @@ def _noise(lines: Sequence[Linear], noise_models: Sequence[NoiseModel], where: W
         out[..., SPEEDS] = (np.array(noise_model.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
         out[..., SLOW], out[..., FLOW] = slow, (new_c * (noise_model.flow * speed) ** 2)[:, None]
         new.append(out)
-    reading = [abreast([_reading(x.track, f) for x in lines], where) for f in noise_models]
+    reading = [abreast([_reading(x.track, f)[:, rows] for x in lines], where) for f in noise_models]
     swell = abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
     return NoiseVariances(
         np.stack(reading, axis=1), np.stack(new, axis=1), swell, _receiver_error(noise_models, h, speed)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from twin.physics.actuators import KeptForces
 from twin.physics.effect import Effect
 from twin.physics.maths import total
 from twin.physics.model import Model
@@ -76,18 +77,22 @@ def linearise(
     *,
     smooth: bool = False,
     exact: bool = False,
+    like: "Linear | None" = None,
+    same: Sequence[int] = (),
 ) -> Linear:
     """Everything about one track that does not depend on the noise model (`at`: values of unknowns that the
     model already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these
     are judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where
-    the filter believes it to be."""
+    the filter believes it to be. `like`: the same track about another model, with only
+    those unknowns, at the places `same`, that do the same in this one."""
     shown, track = track, undone(track, model)
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()
     reading = later(track, respond(track, prompt)[1], late_s)
     # whose column is taken off the readings in full digits
     late = any(u.owner == LATE and u.label in (at or {}) for u in unknowns)
-    A, R = columns(track, model, unknowns, catalogue, at, np.float64 if late else np.float32)
+    known = {} if like is None else {j: (like.A[:, :, k], like.R[:, :, k]) for k, j in enumerate(same)}
+    A, R = columns(track, model, unknowns, catalogue, at, np.float64 if late else np.float32, known)
     bent = _bends(track, model, unknowns, catalogue, at) if exact else None
     turned = {} if smooth else turns(track, model, unknowns, catalogue, at)
     e = when_true(track, track.measured - reading, late_s)
@@ -138,11 +143,12 @@ def _bends(
     """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by
     filters.BENDS: at some steps, and along straight lines between them."""
     steps = np.unique(np.append(np.arange(0, len(track), EVERY), len(track) - 1))
-    some = track.where(steps)
+    some, beside_it, in_streams = track.where(steps), KeptForces(), KeptForces()
 
     def slopes(m: Model) -> np.ndarray:
         keep_steered(some, m, track, steps)  # a gear is stepped through all of them
-        return np.concatenate([jacobian(some, m)[:, :, 2:], by_stream(some, _without_current(m))], axis=2)
+        by_stream_too = by_stream(some, _without_current(m), in_streams)
+        return np.concatenate([jacobian(some, m, beside_it)[:, :, 2:], by_stream_too], axis=2)
 
     out, here = np.zeros((steps.size, 3, 6, len(unknowns)), np.float32), slopes(model)
     for j, unknown in enumerate(unknowns):

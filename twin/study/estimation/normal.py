@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from twin.study.estimation.filters import LIGHT
+
 FOLD = 16  # steps whose innovations are multiplied out together
 
 
@@ -42,33 +44,38 @@ class Normal:
 
 
 class Sums:
-    """Running sums of whitened innovations by noise model and segment: W and S of them, with P unknowns."""
+    """Running sums of whitened innovations by noise model and segment: W and S of them, with P unknowns.
+    `rows` (K,): which of the READINGS there are."""
 
-    def __init__(self, W: int, S: int, P: int) -> None:
+    def __init__(self, W: int, S: int, P: int, rows: np.ndarray) -> None:
         self.M, self.logdet, self.energy = (
             np.zeros((W, S, 1 + P, 1 + P)),
             np.zeros((W, S)),
             np.zeros((W, S, 8)),
         )
-        self.held: list[tuple[np.ndarray, np.ndarray]] = []
+        # of each segment its last steps with readings, of which there are so many
+        self.held, self.count = np.zeros((W, S, FOLD, rows.size, 1 + P), LIGHT), np.zeros(S, int)
+        self.rows = rows
 
-    def add(self, white: np.ndarray, root: np.ndarray) -> None:
-        """One step: innovations with their tangents (W, S, 8, 1 + P), in standard deviations, and the
-        diagonal of the root of their covariance (W, S, 8)."""
-        self.held.append((white, root))
-        if len(self.held) == FOLD:
+    def add(self, white: np.ndarray, root: np.ndarray, some: np.ndarray) -> None:
+        """One step of some segments (R,): innovations with their tangents (W, R, K, 1 + P) in units of their
+        standard deviations, and the diagonal of the root of their covariance (W, R, K)."""
+        if not some.size:
+            return
+        self.held[:, some, self.count[some]] = white
+        self.logdet[:, some] += 2.0 * np.log(root).sum(-1)
+        self.count[some] += 1
+        if self.count.max() == FOLD:
             self._fold()
 
     def _fold(self) -> None:
-        if self.held:
-            white = np.concatenate([w for w, _ in self.held], axis=2)
-            self.M += white.swapaxes(-1, -2) @ white
-            self.energy += np.square(white[..., 0]).reshape(*self.logdet.shape, -1, 8).sum(2)
-            self.logdet += 2.0 * np.log([root for _, root in self.held]).sum((0, 3))
-            self.held = []
+        white = self.held.reshape(*self.logdet.shape, -1, self.held.shape[-1])
+        self.M += white.swapaxes(-1, -2) @ white
+        self.energy[..., self.rows] += np.square(self.held[..., 0]).sum(2)
+        self.held[...], self.count[...] = 0.0, 0
 
     def normals(self, here: np.ndarray, where: tuple[tuple[int, int, int], ...]) -> list[Normal]:
-        """One for each noise model; `here` (T, S, 8): which readings there were. In units of the unknowns."""
+        """One for each noise model; `here` (T, S, K): which readings there were. In units of the unknowns."""
         self._fold()
         count = here.sum((0, 2)).astype(float)
         told = zip(self.M, self.logdet, self.energy, strict=True)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from twin.physics import core
+from twin.physics.actuators import KeptForces
 from twin.physics.dual import Dual
 from twin.physics.effect import Lag
 from twin.physics.effects import of_role
@@ -17,25 +18,25 @@ from twin.physics.state import Situation
 from twin.study.track.track import READINGS, STATE, Track
 
 
-def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
+def respond(track: Track, model: Model, kept: KeptForces | None = None) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along
     the track."""
-    s, nu_dot = sailing(track, model)
+    s, nu_dot = sailing(track, model, kept)
     return nu_dot, readings(s, model)
 
 
-def sailing(track: Track, model: Model) -> tuple[Situation, np.ndarray]:
+def sailing(track: Track, model: Model, kept: KeptForces | None = None) -> tuple[Situation, np.ndarray]:
     """A ship that moves along the track, as an instrument that is right would have it, and its accelerations
-    (N, 3) [m/s2, m/s2, rad/s2]."""
-    s = track.situation(**steered(track, model))
+    (N, 3) [m/s2, m/s2, rad/s2]. `kept`: what actuators gave along it."""
+    s = track.situation(**steered(track, model, kept))
     nu_dot = _nu_dot(s, model)
     s.u_dot, s.v_dot, _ = nu_dot.T
     return s, nu_dot
 
 
-def accelerations(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) accelerations alone. In m/s2 and rad/s2: SI."""
-    return _nu_dot(track.situation(**steered(track, model)), model)
+def accelerations(track: Track, model: Model, kept: KeptForces | None = None) -> np.ndarray:
+    """(N, 3) accelerations alone. In m/s2 and rad/s2: SI. `kept`: what actuators gave along the track."""
+    return _nu_dot(track.situation(**steered(track, model, kept)), model)
 
 
 def standard(model: Model) -> np.ndarray:
@@ -109,14 +110,19 @@ def lagged(track: Track, model: Model) -> np.ndarray:
     return _lagged(track, model)[0]
 
 
-def steered(track: Track, model: Model) -> dict[str, Any]:
-    """Rudder and actuators as they truly stand, as fields of Situation."""
+def steered(track: Track, model: Model, kept: KeptForces | None = None) -> dict[str, Any]:
+    """Rudder and actuators as they truly stand, as fields of Situation. `kept`: what these gave in this
+    motion."""
     delta, orders = _lagged(track, model)
-    return {"delta": delta} if orders is None else {"delta": delta, "orders": orders}
+    if orders is None:
+        return {"delta": delta}
+    return {"delta": delta, "orders": orders if kept is None else kept.orders(orders)}
 
 
 def keep_steered(track: Track, model: Model, of: Track, steps: np.ndarray) -> None:
     """Lets a choice of steps of a track remember what lags made of all of them. `steps` (K,): index."""
+    if model.lags in track.rudder:
+        return
     delta, orders = _lagged(of, model)
     some = None if orders is None else {k: x[steps] for k, x in orders.items()}
     track.rudder[model.lags] = (delta[steps], some)
@@ -167,12 +173,12 @@ def _between(values: np.ndarray) -> np.ndarray:
     return np.append(0.5 * (values[1:] + values[:-1]), values[-1])
 
 
-def jacobian(track: Track, model: Model) -> np.ndarray:
+def jacobian(track: Track, model: Model, kept: KeptForces | None = None) -> np.ndarray:
     """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position
-    does not matter), all sides in one pass. In SI."""
+    does not matter), all sides in one pass. In SI. `kept`: what actuators gave in these motions."""
     U, r = float(model.ship.scale("speed")), 1.0 / float(model.ship.scale("time"))
     sizes = {2: 1e-3, 3: 1e-3 * U, 4: 1e-3 * U, 5: 1e-3 * r}
-    s = track.situation(**steered(track, model))
+    s = track.situation(**steered(track, model, kept))
     for row, (j, size) in enumerate(sizes.items()):
         sides = np.repeat(track.state[None, :, j], 2 * len(sizes), axis=0)
         sides[2 * row] += size
@@ -190,13 +196,14 @@ def _abreast(s: Situation, model: Model, shape: tuple[int, int]) -> np.ndarray:
     return np.stack([np.broadcast_to(a, shape) for a in model.nu_dot(s)])
 
 
-def by_stream(track: Track, still: Model) -> np.ndarray:
+def by_stream(track: Track, still: Model, kept: KeptForces | None = None) -> np.ndarray:
     """(N, 3, 2) acceleration [m/s2, rad/s2] per m/s of a stream to the north and to the east, of a model
-    without one, as a secant over a fiftieth of the usual speed."""
+    without one, as a secant over a fiftieth of the usual speed. `kept`: what actuators gave in these
+    streams."""
     step = 0.02 * float(still.ship.scale("speed"))
     of = np.array([[0.0, 0.0], [step, 0.0], [0.0, step]])[:, :, None]
     stream = of_role("stream").absent(still.ship).but(north=of[:, 0], east=of[:, 1])
-    s = track.situation(**steered(track, still))
+    s = track.situation(**steered(track, still, kept))
     there = _abreast(s, still.but(stream), (3, len(track)))
     return ((there[:, 1:] - there[:, :1]) / step).transpose(2, 0, 1)
 

@@ -12,20 +12,24 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.physics.actuators import KINDS
+from twin.physics.actuators.kinds import OF_WAKE
 from twin.physics.effect import Effect, Lag
 from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship_like import ShipLike
 from twin.study.estimation.columns import Unknown, effect_unknowns, with_values
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
-from twin.study.estimation.innovations import NoiseModel, innovate
-from twin.study.estimation.linear import linearise
+from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.track.track import Track
 
 # of the plausible gear's; the first is as fast as a large tanker's must be
 SLOWER, LATER = (0.5, 1.0, 2.0, 4.0), (1.0, 2.0, 4.0)
 # log evidence, tempered, that a gear must add: where the rudder itself was recorded it adds nothing at all
 GEAR_LOG_BAYES = 20.0
+MASSES = {"X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot"}
+RUDDER_READS = {"K_T0", "K_T1", *OF_WAKE}
 Gears = tuple[type[Effect], ...]  # of like actuators
 
 
@@ -127,14 +131,38 @@ def _geared(
     def with_gear(later: float, slower: float) -> Model:
         return model.but(*(_times(gear.plausible(model.ship), later, slower) for gear in gears))
 
-    def probable(m: Model) -> float:
-        lines = [linearise(t, m.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
-        return evidence(innovate(lines, [NoiseModel()])[0], sd) / temper
+    same = not_behind(gears, unknowns, model.ship)
+    first = [linearise(t, model.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
+    none = (evidence(innovate(first, [NoiseModel()])[0], sd) / temper, 0.0, 0.0)
+    first = [line.only(np.array(same, int)) for line in first]
 
-    none = (probable(model), 0.0, 0.0)
-    _, _, slower = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in SLOWER))
-    score, later, slower = max(slow, *((probable(with_gear(k, slower)), k, slower) for k in LATER))
+    def lines_of(later: float, slower: float) -> list[Linear]:
+        other = with_gear(later, slower)
+        return [
+            linearise(t, other.without_inputs(t.missing())[0], unknowns, known, like=line, same=same)
+            for t, line in zip(tracks, first, strict=True)
+        ]
+
+    def likeliest(gears: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
+        each = innovate_each((lines_of(*gear) for gear in gears), [NoiseModel()])
+        return max((evidence(n, sd) / temper, *gear) for (n,), gear in zip(each, gears, strict=True))
+
+    _, _, slower = slow = max(none, likeliest([(0.0, k) for k in SLOWER]))
+    score, later, slower = max(slow, likeliest([(k, slower) for k in LATER]))
     return with_gear(later, slower) if score > none[0] + GEAR_LOG_BAYES else model
+
+
+def not_behind(gears: Gears, unknowns: Sequence[Unknown], ship: ShipLike) -> list[int]:
+    """Places of the core's numbers that do the same whatever these gears do: those that neither change the
+    mass, by which every force is divided, nor what the actuators behind the gears make of their orders."""
+    behind = [ship.actuator(g.actuator) for g in gears if issubclass(g, OfActuator)]
+    reads = {name for a in behind for name in KINDS[a.kind].reads} if behind else RUDDER_READS
+    names, own = MASSES | reads, tuple(f"{a.name}." for a in behind)
+    return [
+        j
+        for j, u in enumerate(unknowns)
+        if u.owner == "core" and not any(n in names or n.startswith(own) for n in u.names)
+    ]
 
 
 def _times(gear: Effect, later: float, slower: float) -> Effect:
