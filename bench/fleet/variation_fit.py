@@ -4,10 +4,10 @@
     gain(s) = sum over healthy voyages of f( ln p(voyage | references, s) - ln p(voyage | references, 0) )
 
 s: standard deviations of kinds of numbers (two of them stand in twin/study/reference/variation.py), climbed
-one at a time on a grid; f(x) = c tanh(x / c), c = LARGEST_GAIN, so that no voyage counts for more. The voyages
-are those of `run` with nothing hidden, which no calibration saw; the day's wind, stream and sea are integrated
-out beside all that is usual. Each family is left out in turn; its voyages are then judged by what the others
-taught."""
+one at a time on a grid; f(x) = c tanh(x / c), c = LARGEST_GAIN, so that no voyage counts for more. The
+voyages are those of `run` with nothing hidden, which no calibration saw; the day's wind, stream and sea are
+integrated out beside all that is usual. Each family is left out in turn; its voyages are then judged by what
+the others taught."""
 
 import argparse
 import pickle

@@ -1,5 +1,4 @@
-"""By how much the instruments of a healthy ship differ between voyages, before its reference voyages have shown
-it.
+"""By how much the instruments of a healthy ship differ between voyages, before its references have shown it.
 
 A compass settles anew, and so does the flow past a log: that two or three reference voyages agree on these
 shows little. The standard deviations are those under which healthy voyages of random ships are most likely,
