@@ -1,9 +1,17 @@
-"""`python -m bench.fleet VERB`: run, table, fit, keep, peer, prior, proofs."""
+"""`python -m bench.fleet VERB`: run, table, fit, keep, peer, prior, variation, proofs."""
 
 import argparse
 import sys
 
-from bench.fleet import decision_fit, false_proofs, fleet_page, keep_answers, prior_fit, sparse_peer
+from bench.fleet import (
+    decision_fit,
+    false_proofs,
+    fleet_page,
+    keep_answers,
+    prior_fit,
+    sparse_peer,
+    variation_fit,
+)
 from bench.fleet import run as verb_run
 from twin.errors import TwinError
 
@@ -20,6 +28,7 @@ def main() -> int:
         "keep": keep_answers,
         "peer": sparse_peer,
         "prior": prior_fit,
+        "variation": variation_fit,
         "proofs": false_proofs,
     }
     for name, module in each.items():

@@ -11,6 +11,7 @@ from twin.study.diagnosis.open_loop_check import (
     COMPLEXITY,
     FORM,
     OpenLoopCheck,
+    expected_errors,
     held_out_error,
     horizon_s,
     mean_error_m,
@@ -22,6 +23,7 @@ from twin.study.diagnosis.refine import Found, refine
 from twin.study.diagnosis.verdict import weights
 from twin.study.estimation.rough import KNOWN, added, elsewhere
 from twin.study.reference.evidence import Hypothesis, posterior
+from twin.study.reference.path_error import PathError
 
 TEN = 10.0  # windows that do not overlap
 EXPECTED_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
@@ -73,6 +75,23 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
         and roughly(known) == 0.0
     )
     assert without.effects == tanker.effects
+
+
+def test_the_level_of_the_reference_voyages_counts_once(tanker, voyages):
+    """Test: a ship whose references ended twice as far off as noise and structure have it, and the same with a
+    measured error of ten times that beside that level. Expected: twice what is simulated, whatever the other says."""
+
+    def expected(level, measured):
+        ahead, read = np.array([10.0, 120.0]), np.array([np.eye(8), 100.0 * np.eye(8)])
+        mean = measured * np.array([[2.0, 1.0, 0.01], [20.0, 10.0, 0.1]])
+        path = PathError(ahead, read, np.zeros(2), 10.0, mean, 3, level=np.array([level, level]))
+        stored = tanker.notes["structural"] | {"path_error": path.entry()}
+        notes = tanker.notes | {"structural": stored}
+        return expected_errors(assemble([voyages["Wind"]], replace(tanker, notes=notes)))["usual"]
+
+    simulated = expected(1.0, 1.0)
+    assert expected(2.0, 1.0) == pytest.approx(2.0 * simulated, rel=1e-6)
+    assert expected(2.0, 10.0) == pytest.approx(2.0 * simulated, rel=1e-6)
 
 
 def test_a_wind_may_lead_her_as_far_off_as_its_side_force_would_that_attacks_elsewhere():

@@ -41,6 +41,18 @@ def test_a_single_voyage_says_nothing_of_the_next():
     assert not scattered(fleet(np.ones(P), 1, 0)[1], np.zeros(P)).any()
 
 
+def test_numbers_differ_by_what_is_usual_until_voyages_show_more():
+    """Test: one or two voyages that agree, and eight of which one number differs. Expected: what is usual stands
+    for all but that one."""
+    usual = np.full(P, 0.1**2)
+    for voyages in (1, 2):
+        assert scattered(fleet(np.zeros(P), voyages, 3)[1], np.zeros(P), usual).tolist() == usual.tolist()
+    scatter = np.zeros(P)
+    scatter[2] = 0.8
+    found = scattered(fleet(scatter, 8, 1)[1], np.zeros(P), usual)
+    assert 0.3**2 < found[2] < 1.7**2 and np.delete(found, 2).tolist() == np.delete(usual, 2).tolist()
+
+
 def test_the_ships_own_numbers_are_known_no_better_than_their_scatter_over_the_voyages():
     scatter = np.full(P, 0.5)
     lasting_ones, told = fleet(scatter, 8, 1)

@@ -1,7 +1,7 @@
 """What is usual on a ship: what its reference voyages leave known of the core, of every lasting effect and of
 the instruments."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -37,7 +37,7 @@ def usual(ship: Ship, tracks: Sequence[Track], noise_model: NoiseModel) -> dict[
     centres = np.array([first_prior(u, ship).centre for u in unknowns])
     references = known_from(lines, unknowns, beside, temper, centres)
     nuisance, between = references.nuisance(), references.between
-    path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, between)
+    path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, references.scatter)
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
     return {
@@ -61,15 +61,14 @@ def path_errors(
     noise_model: NoiseModel,
     temper: float,
     centres: np.ndarray,
-    between: Mapping[str, float],
+    scatter: np.ndarray,
 ) -> dict[str, Any]:
     """What the ship file keeps of the open-loop error on these voyages, each left out in turn
     (reference/path_error.py); empty where nothing can be predicted. `lines`: `tracks` linearised in
-    `unknowns`; `centres` (P,): means of the unknowns' priors, in the unknowns' own units; `between`: by how
-    many prior widths numbers differ from voyage to voyage."""
+    `unknowns`; `centres` (P,): means of the unknowns' priors, in the unknowns' own units; `scatter` (P,):
+    variance of each from voyage to voyage, in prior widths squared."""
     model, sd = Model.of(ship), np.array([u.sd for u in unknowns])
     pull = (centres - np.array([u.centre for u in unknowns])) / sd
-    scatter = np.array([between.get(u.label, 0.0) ** 2 for u in unknowns])
     without = models_without(
         model, unknowns, innovate(lines, [noise_model])[0], scatter, pull, temper, of_ship(ship)
     )

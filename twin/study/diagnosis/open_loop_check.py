@@ -122,7 +122,7 @@ def open_loop_check(
         for s, f in found.items()
         if not case.causes(s) or likely[s] > best - REACH
     }
-    expected_m = before.expected_m if before else _expected_errors(case)
+    expected_m = before.expected_m if before else expected_errors(case)
     # the expected errors have the others
     irregular = frozenset(
         name for name in case.candidates if case.catalogue[name].irregular and name not in case.present
@@ -142,23 +142,27 @@ def open_loop_check(
     return OpenLoopCheck(asked, expected_m, levered, windows, irregular, frozenset(case.weather))
 
 
-def _expected_errors(case: Case) -> dict[str, float]:
+def expected_errors(case: Case) -> dict[str, float]:
     """[m] by noise scenario: what noise and structure alone would make of the path."""
-    steps = dict(zip(SCENARIOS, _usual(case, case.scenarios(list(SCENARIOS))), strict=True))
+    levels = _levels(case)
+    steps = dict(zip(SCENARIOS, _usual(case, case.scenarios(list(SCENARIOS)), bool(levels)), strict=True))
     # what is run free is a core alone, and as good as it was when nothing was wrong
-    level, known = _level(case, steps["coarse"]), roughly(case)
+    level = float(np.exp(np.mean(np.log(levels)))) if levels else _no_nearer(case, steps["coarse"])
+    known = roughly(case)
     return {name: float(np.hypot(level * max(m, steps["coarse"]), known)) for name, m in steps.items()}
 
 
-def _level(case: Case, coarse_m: float) -> float:
-    """How much farther off than noise and structure have it the ship ended on its reference voyages [1]; no
-    nearer than that in a file whose calibration did not compare the two."""
+def _levels(case: Case) -> list[float]:
+    """How much farther off than noise and structure alone have it the ship ended on its reference voyages
+    [1], so far ahead as each voyage is predicted; none in a file whose calibration did not compare them."""
     path = path_error_of(case.model.ship)
     levels = [path.level_at(horizon_s(t, case.model)) for t in case.tracks] if path else []
-    known = [level for level in levels if level is not None]
-    if not known:
-        return max(1.0, measured_error_m(case) / coarse_m)
-    return float(np.exp(np.mean(np.log(known))))
+    return [level for level in levels if level is not None]
+
+
+def _no_nearer(case: Case, coarse_m: float) -> float:
+    """The same where the two were not compared: no nearer than calibration measured."""
+    return max(1.0, measured_error_m(case) / coarse_m)
 
 
 def plain(h: Hypothesis) -> Hypothesis:
@@ -232,13 +236,16 @@ def held_out_error(case: Case, found: Found) -> float:
     return total / max(count, 1)
 
 
-def _usual(case: Case, noise_models: Sequence[NoiseModel]) -> list[float]:
-    """(F,) mean position error [m] of a model that is as good as each of these noise models says."""
+def _usual(case: Case, noise_models: Sequence[NoiseModel], simulated_alone: bool) -> list[float]:
+    """(F,) mean position error [m] of a model that is as good as each of these noise models says, and, unless
+    they are `simulated_alone`, no better than on the reference voyages."""
     errors: list[list[np.ndarray]] = [[] for _ in noise_models]
     for track in case.tracks:
         model, horizons = case.model.without_inputs(track.missing())[0], [horizon_s(track, case.model)]
         for mine, windows in zip(
-            errors, predict_each(track, model, noise_models, horizons, leads=1), strict=True
+            errors,
+            predict_each(track, model, noise_models, horizons, leads=1, simulated_alone=simulated_alone),
+            strict=True,
         ):
             mine.append(_errors(windows, STRUCTURE))
     return [max(float(np.nanmean(np.concatenate(mine))), 1e-9) for mine in errors]

@@ -72,7 +72,17 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
     ahead = horizons(model, tracks)
     parts = _parts(tracks, without)
     raw = [
-        _of_part(predict(t, fed(m, t)[0], ahead, noise_model=noise_model_of(model.ship), seed=i), keep)
+        _of_part(
+            predict(
+                t,
+                fed(m, t)[0],
+                ahead,
+                noise_model=noise_model_of(model.ship),
+                seed=i,
+                simulated_alone=True,
+            ),
+            keep,
+        )
         for i, (t, m, keep) in enumerate(parts)
     ]
     usable = [h for h in ahead if sum(int(w.valid[w.at(h)].sum()) for w in raw) > 2]

@@ -41,14 +41,23 @@ def predict(
     stride_s: float = STRIDE_S,
     leads: int = LEADS,
     seed: int = 0,
+    simulated_alone: bool = False,
 ) -> Windows:
     """Run the model over the track's windows. `noise_model`: what calibration left unexplained, if the ship
-    knows it.
+    knows it; its run is no nearer than the ship was on its reference voyages, unless `simulated_alone`.
 
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
-    noise_models = [] if noise_model is None else [noise_model]
-    return predict_each(track, model, noise_models, horizons_s, stride_s=stride_s, leads=leads, seed=seed)[0]
+    return predict_each(
+        track,
+        model,
+        [] if noise_model is None else [noise_model],
+        horizons_s,
+        stride_s=stride_s,
+        leads=leads,
+        seed=seed,
+        simulated_alone=simulated_alone,
+    )[0]
 
 
 def predict_each(
@@ -60,6 +69,7 @@ def predict_each(
     stride_s: float = STRIDE_S,
     leads: int = LEADS,
     seed: int = 0,
+    simulated_alone: bool = False,
 ) -> list[Windows]:
     """The same for each of these noise models, side by side; one without any where none is given."""
     lead = _leads(track, horizons_s, leads)
@@ -78,7 +88,7 @@ def predict_each(
         Windows(track, start, lead, promised[[MODEL, SENSORS, k]], valid, measured)
         for k in range(STRUCTURE, len(promised))
     ]
-    return [no_better(w, model.ship) for w in each] if noise_models else each
+    return each if simulated_alone or not noise_models else [no_better(w, model.ship) for w in each]
 
 
 def coarse(

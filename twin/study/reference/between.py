@@ -77,15 +77,23 @@ def ship_of(
     return covariance @ (pull + sum(t.b for t in confounded)), covariance
 
 
-def scattered(told: Sequence[BetweenVoyages], pull: np.ndarray) -> np.ndarray:
-    """(P,) variance of each number from voyage to voyage, in prior widths squared: zero for all but those
-    that clearly differ."""
-    scatter = np.zeros_like(pull)
+def scattered(
+    told: Sequence[BetweenVoyages], pull: np.ndarray, usual: np.ndarray | None = None
+) -> np.ndarray:
+    """(P,) variance of each number from voyage to voyage, in prior widths squared: `usual` (P,) for all but
+    those that clearly differ by more; None: zero."""
+    least = np.zeros_like(pull) if usual is None else usual
+    scatter = least
     if len(told) < 2:
         return scatter
     best = _foretold(told, scatter, pull)
     while True:
-        trials = [_with(scatter, i, share**2) for i in _steepest(told, scatter, pull) for share in SHARES]
+        trials = [
+            _with(scatter, i, share**2)
+            for i in _steepest(told, scatter, pull)
+            for share in SHARES
+            if share**2 > least[i]
+        ]
         scores = [_foretold(told, trial, pull) for trial in trials]
         if max(scores) < best + DIFFERENT_LOG_PROBABILITY:
             return scatter

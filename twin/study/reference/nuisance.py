@@ -21,6 +21,7 @@ from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
+from twin.study.reference.variation import usual_scatter
 
 HEALTHY_WIDTHS = (
     0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
@@ -106,12 +107,15 @@ class Known:
     unknowns: tuple[Unknown, ...]
     voyages: tuple[BetweenVoyages, ...]
     scatter: np.ndarray
+    usual: np.ndarray
     pull: np.ndarray
 
     @property
     def between(self) -> dict[str, float]:
-        """By what share of its prior's width a number differs, of those that do."""
-        return {u.label: float(np.sqrt(s)) for u, s in zip(self.unknowns, self.scatter, strict=True) if s}
+        """By what share of its prior's width a number differs, of those that differ by more than is `usual`
+        (C,)."""
+        each = zip(self.unknowns, self.scatter, self.usual, strict=True)
+        return {u.label: float(np.sqrt(s)) for u, s, least in each if s > least}
 
     def nuisance(self, without: int | None = None) -> Nuisance:
         """As they concern the next voyage; `without` one of them, as that one would have been foretold."""
@@ -143,7 +147,8 @@ def known_from(
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [noise_model])[0], sd, temper)
-    return Known(unknowns, tuple(told), scattered(told, pull), pull)
+    usual = usual_scatter(unknowns)
+    return Known(unknowns, tuple(told), scattered(told, pull, usual), usual, pull)
 
 
 def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknown]) -> np.ndarray:
