@@ -39,7 +39,6 @@ from twin.study.reference.nuisance import usual_unknowns
 from twin.study.reference.sailed import fed, read_all
 from twin.study.reference.seaway import swung
 from twin.study.reference.structure import noise_model_of
-from twin.study.reference.variation import usual_scatter
 from twin.study.track.track import Track, track
 from twin.study.update.adding import Fitted, fitted, lasting, of_hypothesis
 from twin.study.update.held_parts import predicted
@@ -126,7 +125,7 @@ def _left_out(path: str, *voyages: str) -> tuple[Ship, list[Track], list[Ship]]:
     )[0]
     pull = np.array([(first_prior(u, ship).centre - u.centre) / u.sd for u in unknowns])
     shown = np.array([stored["between_voyages"].get(u.label, 0.0) ** 2 for u in unknowns])
-    scatter = np.maximum(shown, usual_scatter(unknowns))
+    scatter = np.maximum(shown, [u.varies**2 for u in unknowns])
     models = models_without(model, unknowns, normal, scatter, pull, stored["temper_beside"], known)
     return ship, tracks, [replace(m.ship, effects=m.effects) for m in models]
 

@@ -3,7 +3,7 @@
 
     gain(s) = sum over healthy voyages of f( ln p(voyage | references, s) - ln p(voyage | references, 0) )
 
-s: standard deviations of kinds of numbers (two of them stand in twin/study/reference/variation.py), climbed
+s: standard deviations of kinds of numbers (of effects: `Effect.varies`), climbed
 one at a time on a grid; f(x) = c tanh(x / c), c = LARGEST_GAIN, so that no voyage counts for more. The
 voyages are those of `run` with nothing hidden, which no calibration saw; the day's wind, stream and sea are
 integrated out beside all that is usual. Each family is left out in turn; its voyages are then judged by what
@@ -22,7 +22,7 @@ from bench.fleet.fleet_page import lines
 from bench.fleet.plausibility import build
 from bench.fleet.voyage_plan import VOYAGES, plan, references, sailed
 from twin.errors import DataError
-from twin.physics.effects import of_ship
+from twin.physics.effects import catalogue, of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import NO_MODEL, Unknown, effect_unknowns
 from twin.study.estimation.innovations import innovate
@@ -32,7 +32,6 @@ from twin.study.reference.derivatives import first_prior
 from twin.study.reference.nuisance import usual_unknowns
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import noise_model_of
-from twin.study.reference.variation import USUAL_SHARES
 from twin.study.track.track import track
 
 GRID = (0.0, 0.015, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)
@@ -163,7 +162,8 @@ def page(ships: Sequence[OneShip]) -> list[str]:
     taught = {f: learned([s for s in ships if s.family != f]) for f in families}
     every = learned(ships)
     left_out = [(s, s.log_probability(taught[s.family]) - s.log_probability({})) for s in ships]
-    stands = [(s, s.log_probability(USUAL_SHARES) - s.log_probability({})) for s in ships]
+    standing = {name: effect.varies for name, effect in catalogue().items()}
+    stands = [(s, s.log_probability(standing) - s.log_probability({})) for s in ships]
     by_family = [
         (f, *(_summary([g for s, g in of if s.family == f]) for of in (left_out, stands))) for f in families
     ]
@@ -181,7 +181,7 @@ def page(ships: Sequence[OneShip]) -> list[str]:
             "",
             ("kind", "stands", "learned on all", "least and most with a family left out"),
             [
-                (k, f"{USUAL_SHARES.get(k, 0.0):g}", f"{every[k]:g}", _range([t[k] for t in taught.values()]))
+                (k, f"{standing.get(k, 0.0):g}", f"{every[k]:g}", _range([t[k] for t in taught.values()]))
                 for k in WEIGHED_KINDS
             ],
         ),

@@ -122,6 +122,8 @@ class Effect:
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
     # numbers of which each day brings a little: no water and no air stands still
     every_day: ClassVar[tuple[str, ...]] = ()
+    # standard deviation of its numbers between voyages, in widths of what a healthy ship has (decision 0030)
+    varies: ClassVar[float] = 0.0
     # numbers that do, to first order about none, what another of its numbers does
     copies: ClassVar[tuple[str, ...]] = ()
     # effects that are a part of this one, so that beside it they say nothing

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from twin.live.certificate.certificate import certify
+from twin.live.certificate.stream import stream_margin
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
@@ -30,7 +31,7 @@ def test_a_current_that_is_wrong_by_the_margin_does_no_more_than_the_disturbance
         named = zip(("u", "v", "r", "delta", "n"), inside, strict=True)
         at = {name: ranges[name][0] + x * (ranges[name][1] - ranges[name][0]) for name, x in named}
         angle = rng.uniform(-np.pi, np.pi)
-        off = c.stream_margin * np.array([np.cos(angle), np.sin(angle)])
+        off = stream_margin(c) * np.array([np.cos(angle), np.sin(angle)])
         right = np.array(model.nu_dot(Situation(**at)))
         wrong = np.array(model.nu_dot(Situation(**at | {"u": at["u"] - off[0], "v": at["v"] - off[1]})))
         turned = np.array([at["r"] * off[1], -at["r"] * off[0], 0.0])
@@ -42,10 +43,10 @@ def test_a_current_that_is_wrong_by_the_margin_does_no_more_than_the_disturbance
 def test_the_page_says_the_margins_of_the_bundled_ships():
     page = (ROOT / "docs/stability.md").read_text()
     said = re.search(
-        r"covers c up to\s+`Certificate.stream_margin`: ([\d.]+) m/s for the tanker, ([\d.]+) for the container ship, "
+        r"covers c up to\s+`stream_margin`: ([\d.]+) m/s for the tanker, ([\d.]+) for the container ship, "
         r"([\d.]+) for the boat, ([\d.]+) for the model",
         page,
     )
     hulls = ("kvlcc2", "container", "usv", "kvlcc2_model")
-    margins = [certify(Model.of(load(hull)), None, 0.1).stream_margin for hull in hulls]
+    margins = [stream_margin(certify(Model.of(load(hull)), None, 0.1)) for hull in hulls]
     assert [float(x) for x in said.groups()] == [round(x, 2) for x in margins]

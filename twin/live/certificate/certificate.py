@@ -104,14 +104,6 @@ class Certificate(Promise):
         """The operating set for which it holds."""
         return self.plant.operating
 
-    @property
-    def stream_margin(self) -> float:
-        """By how much [m/s] the followed current may be wrong before that alone is more than the disturbance
-        of calm water (without the learned force's part)."""
-        calm = c3.row(a - b for a, b in zip(self.disturbance.calm, self.saturation, strict=True))
-        covered = c3.apply(self.plant.inertia, calm)
-        return min(a / max(b, 1e-12) for a, b in zip(covered, self.plant.by_stream(), strict=True))
-
     def bound_in(self, H_s: float) -> Row:
         """The ultimate bound in a sea of that height [m/s, m/s, rad/s]."""
         d = self.disturbance

@@ -4,7 +4,6 @@ and how it is disturbed.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import hypot
 from typing import Any
 
 from twin.errors import SettingsError
@@ -56,12 +55,6 @@ class Plant:
         rows = (*((*size[i], self.heading[i]) for i in AXES), (0.0, 0.0, 1.0, 0.0))
         whole = [[float(i == j) + self.h * rows[i][j] + self.bend[i][j] for j in range(4)] for i in range(4)]
         return tuple(tuple(total(whole[i][k] * rows[k][j] for k in range(4)) for j in range(4)) for i in AXES)
-
-    def by_stream(self) -> Row:
-        """What a metre a second of current that is not known adds to nu_dot at most, in whatever direction:
-        slopes with the speed through the water, and its turning in the ship's axes [1/s, 1/s, 1/(m s)]."""
-        size, r = self.magnitude(), max(abs(x) for x in self.operating.ranges["r"])
-        return c3.row(hypot(size[i][0], size[i][1]) + (r if i < 2 else 0.0) for i in AXES)
 
     def growth(self) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may

@@ -20,6 +20,7 @@ class HeadingBias(SensorFault):
     goes."""
 
     attitude = True
+    varies = 0.15
     turning = "turned"
     by_readings = MappingProxyType({"A": "bias"})
     source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"

@@ -16,6 +16,7 @@ class SpeedLogMisalignment(SensorFault):
     """The speed log is mounted askew, so speed ahead shows up as drift in proportion."""
 
     needs = ("u_r", "v_r")
+    varies = 0.15
     by_readings = MappingProxyType({"log_angle": "angle"})
     source = (
         "Kinsey & Whitcomb (2007) In situ alignment calibration of attitude and Doppler sensors, IEEE "

@@ -34,6 +34,7 @@ class Unknown:
     every_day: bool = False  # whether each day brings a little of it
     # other effects whose number of this name it is, too; of the core: whole names of numbers that it also is
     also: tuple[str, ...] = ()
+    varies: float = 0.0  # standard deviation between healthy voyages of one ship, in `sd`
 
     @property
     def label(self) -> str:
@@ -144,6 +145,7 @@ def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
                 lo,
                 hi,
                 p.name in effect.every_day,
+                varies=effect.varies,
             )
         )
     return out

@@ -21,7 +21,6 @@ from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
-from twin.study.reference.variation import usual_scatter
 
 HEALTHY_WIDTHS = (
     0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
@@ -147,7 +146,7 @@ def known_from(
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [noise_model])[0], sd, temper)
-    usual = usual_scatter(unknowns)
+    usual = np.array([u.varies**2 for u in unknowns])
     return Known(unknowns, tuple(told), scattered(told, pull, usual), usual, pull)
 
 
