@@ -136,7 +136,7 @@ def test_a_recorded_voyage_is_seen_on_the_bus_paused_and_to_its_end(voyage, tmp_
                 process.send_signal(signal.SIGINT)
         lines = view.communicate(timeout=30)[0].splitlines()
         feed._session.close()
-    assert view.returncode == 0
+    assert view.returncode == 130
     assert any(line.startswith("RECORDED") and "physics only" in line for line in lines), lines
 
 
