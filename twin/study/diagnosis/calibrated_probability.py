@@ -41,16 +41,16 @@ FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a 
     "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
 OF_CAUSE = {  # of the explanation
-    "constant": -5.17,
-    "log_odds": 0.33,
+    "constant": -4.58,
+    "log_odds": 0.29,
     "clearness": 0.98,
-    "left_little": 0.57,
-    "named": 1.31,
-    "of_known_form": 1.95,
+    "left_little": 0.36,
+    "named": 1.32,
+    "of_known_form": 1.69,
 }
-OF_CAUSE_BESIDE = {"constant": -1.33, "log_odds": 1.09}  # the explanation does without it
-OF_NOTHING = {"constant": -1.18, "log_odds": 0.92, "unnamed": 1.43}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -0.41, "log_odds": 0.70, "verdict": 0.75}  # what is there has no name
+OF_CAUSE_BESIDE = {"constant": -1.33, "log_odds": 1.08}  # the explanation does without it
+OF_NOTHING = {"constant": -1.38, "log_odds": 0.97, "unnamed": 1.62}  # no cause of ship and instruments
+OF_UNKNOWN = {"constant": -0.49, "log_odds": 0.67, "verdict": 0.69}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
