@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.fleet.fleet_page import lines
-from twin.errors import DataError
+from bench.fleet.kept_ships import of_families
 from twin.study.estimation.form import TERMS
 
 OF_FORM = "form."
@@ -54,11 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    ships = [of_ship(path) for folder in args.folder for path in sorted((folder / "ships").glob("*.pickle"))]
-    families = len({s.family for s in ships})
-    if families < 2:
-        raise DataError(f"{args.folder[0]}: ships of {families} families in ships/; two at least.")
-    print("\n".join(page(ships)))
+    print("\n".join(page([of_ship(path) for path in of_families(args.folder)])))
     return 0
 
 

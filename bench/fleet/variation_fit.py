@@ -19,9 +19,9 @@ import numpy as np
 
 from bench.fleet.fact_rows import voyage
 from bench.fleet.fleet_page import lines
+from bench.fleet.kept_ships import of_families
 from bench.fleet.plausibility import build
 from bench.fleet.voyage_plan import VOYAGES, plan, references, sailed
-from twin.errors import DataError
 from twin.physics.effects import catalogue, of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import NO_MODEL, Unknown, effect_unknowns
@@ -95,12 +95,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    paths = [path for folder in args.folder for path in sorted((folder / "ships").glob("*.pickle"))]
-    ships = [ship for path in paths if (ship := of_ship_file(path)).healthy]
-    families = len({s.family for s in ships})
-    if families < 2:
-        raise DataError(f"{args.folder[0]}: ships of {families} families in ships/; two at least.")
-    print("\n".join(page(ships)))
+    ships = (of_ship_file(path) for path in of_families(args.folder))
+    print("\n".join(page([ship for ship in ships if ship.healthy])))
     return 0
 
 

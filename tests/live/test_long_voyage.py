@@ -12,13 +12,13 @@ import pytest
 
 from twin.live.build import loop_of
 from twin.live.clock import Instant
+from twin.live.demonstration import ticks_of
 from twin.live.inbox import Inbox
 from twin.live.keelson import messages
 from twin.live.keelson.bus import MemoryBus
 from twin.live.keelson.messages import encode_fix, encode_float, wrap
 from twin.live.keelson.topics import BY_SUBJECT, address, key
 from twin.live.log.log_rows import read_rows
-from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import LogFile
 from twin.live.log_replay import replay
 from twin.live.outbox import Outbox
@@ -223,14 +223,6 @@ def live_log(kvlcc2, sailing, certificate_file, tmp_path):
             now_s += 0.1
     assert len(charts) > 10
     return path, chosen, kvlcc2.U_0, off_m
-
-
-def ticks_of(path):
-    return [
-        messages.Tick.FromString(m.data)
-        for m in McapReader(path).messages()
-        if m.type_name == "shiptwin.Tick"
-    ]
 
 
 def test_I20_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_bytes(live_log, tmp_path):
