@@ -154,27 +154,24 @@ def _rows_of_voyage(ship: RandomShip, case: FleetCase, model: Model, facts: dict
 
 
 def oracle(said: Diagnosed, case: FleetCase) -> dict[str, Any] | None:
-    """Open-loop error with nothing but the day's weather, and with what is truly hidden beside it [m]."""
+    """Open-loop error with the best of the day's weather that holds nothing of what is hidden, and with what
+    is truly hidden beside the day's weather [m]."""
     c = said.case
     true = c.ordered([n for n in case.hidden if n in CATALOGUE])
     if len(true) < len(case.hidden) or not true:
         return None
     held = {part for n in true for part in c.catalogue[n].holds}
     true = tuple(n for n in true if n not in held)
-    day = tuple(
-        n
-        for n in said.result["facts"]["likeliest"]
-        if n in c.weather and n not in (*true, *held) and not set(c.catalogue[n].holds) & set(true)
-    )
+
+    def apart(name: str) -> bool:
+        return name not in (*true, *held) and not set(c.catalogue[name].holds) & set(true)
+
+    day = tuple(n for n in said.result["facts"]["likeliest"] if n in c.weather and apart(n))
     chosen = c.ordered((*day, *true))
-    base = min(
-        (s for s in said.found if not c.causes(s) and np.isfinite(said.found[s].open_loop_error_m)),
-        key=lambda s: said.found[s].open_loop_error_m,
-    )
-    without = (
-        said.found[()].open_loop_error_m
-        if any(n in c.weather for n in true)
-        else said.found[base].open_loop_error_m
+    without = min(
+        f.open_loop_error_m
+        for s, f in said.found.items()
+        if np.isfinite(f.open_loop_error_m) and not c.causes(s) and all(map(apart, s))
     )
     found = said.found.get(chosen)
     if found is None:
