@@ -20,6 +20,7 @@ from twin.recording.unknown_controls import CONTROLS, known, of_ship
 from twin.recording.voyage import Voyage
 from twin.study.track.motion_channels import MEASURED, READINGS
 from twin.study.track.outliers import Jump, outliers, stretches_of
+from twin.study.track.sample_waits import hold_s_of, shortest_wait_s
 from twin.study.track.smooth_motion import running_mean, smooth_motion
 
 PLACE = ("north_m", "east_m")
@@ -45,7 +46,6 @@ STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail its own l
 # and no fewer, however slowly it was logged: with longer steps a ship cannot be stepped at all
 FEWEST_PER_LENGTH = 8
 ROLLED = 0.3  # L/U_0 over which the measured heel is averaged before its rate is taken
-LONGEST_HOLD_S = 5.0  # a control that is missing for longer breaks the track
 
 
 @dataclass(frozen=True)
@@ -127,14 +127,15 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     """Put a voyage on the ship's own grid and find the smooth motion under it; DataError when that cannot be
     done."""
     length_s = float(ship.scale("time"))
-    h = _step(max(voyage.step_s, length_s / steps_per_length), length_s / FEWEST_PER_LENGTH)
+    sample_s = shortest_wait_s(voyage, (*MEASURED.values(), *of_ship(ship)))
+    h = _step(max(sample_s, length_s / steps_per_length), length_s / FEWEST_PER_LENGTH)
     if voyage.sailed_s < 3.0 * length_s:
         raise DataError(
             f"{voyage.name}: {voyage.sailed_s:.0f} s is less than three ship lengths of sailing "
             f"({3 * length_s:.0f} s): "
             "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
         )
-    hold_s = {name: _hold_s(voyage, name) for name in of_ship(ship)}
+    hold_s = {name: hold_s_of(voyage, name) for name in of_ship(ship)}
     hole_s = max(HOLE_S, 3.0 * max(hold_s.values()))
     grid = _alone(voyage, *GRIDDED).on_grid(h, hole_s=hole_s)
     nothing = np.full(grid.time_s.size, np.nan)
@@ -237,13 +238,6 @@ def _samples(voyage: Voyage, channel: str, steps: np.ndarray, h: float) -> np.nd
 def _alone(voyage: Voyage, *names: str) -> Voyage:
     """The voyage with these channels only."""
     return voyage.with_rows(voyage.time_s, {n: voyage.columns[n] for n in names if n in voyage.columns})
-
-
-def _hold_s(voyage: Voyage, name: str) -> float:
-    """How long a control's last value is held [s]: through short holes, or for the usual wait for the next
-    sample."""
-    waits = np.diff(voyage.time_s[np.isfinite(voyage[name])])
-    return max(LONGEST_HOLD_S, 1.5 * float(np.median(waits)) if waits.size else 0.0)
 
 
 def _bridge(values: np.ndarray, longest_s: float, t: np.ndarray) -> np.ndarray:
