@@ -54,8 +54,8 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
     book = Hypotheses(case, scenarios)
     searched = _searched(book, progress, seen)
-    if book.last and not _explained(case, *searched[:2]):
-        book.wide = True
+    if not _explained(case, *searched[:2]):
+        book.wide, book.last = True, book.one_more()
         searched = _searched(book, progress, seen)
     return searched
 
@@ -169,6 +169,16 @@ class Hypotheses:
         for chosen in earned:
             best.setdefault(case.causes(chosen), chosen)
         return list(best.values())
+
+    def one_more(self) -> list[Sets]:
+        """Sets of one cause more than the likeliest, or than its weather alone, that were not judged: the
+        likeliest first."""
+        best, case = self.weighed()[0].effects, self.case
+        beside = [best, case.day(best)][len(case.causes(best)) == MAX_CAUSES :]
+        wanted = {
+            case.ordered((*some, cause)) for some in beside for cause in case.causes(case.candidates)
+        } - set(self.found)
+        return list(dict.fromkeys(h.effects for h in self.weighed() if h.effects in wanted))[:LAST]
 
     def of_the_day(self) -> list[Sets]:
         """What every day brings much of on this ship: to first order what is usual takes the credit, and only
