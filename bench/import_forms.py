@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.live.signals.geodesy import datum, from_chart
 from twin.recording.map_file import parse_map
 from twin.recording.raw import through
 from twin.recording.table import Table
@@ -23,11 +24,15 @@ AHEAD, ASIDE = "surge_velocity_mps", "sway_velocity_mps"
 Export = dict[str, np.ndarray]
 CONTROLS = {RUDDER: "rud", TURNS: "rpm", HEADING: "hdg"}
 PLACE = {"north_m": "n", "east_m": "e"}
+GEODETIC = {"latitude_deg": "lat", "longitude_deg": "lon"}
+DATUM = datum(59.4, 10.6)  # where such a recording begins [deg]
 COURSE = {
     AHEAD: {"column": "sog", "unit": "kn", "frame": "course"},
     ASIDE: {"column": "cog", "frame": "course"},
 }
-BRIDGE: dict[str, Any] = {**CONTROLS, **PLACE, **COURSE, RATE: {"column": "rot", "unit": "deg/min"}}
+TURNING: dict[str, Any] = {RATE: {"column": "rot", "unit": "deg/min"}}
+BRIDGE: dict[str, Any] = {**CONTROLS, **PLACE, **COURSE, **TURNING}
+SATELLITE: dict[str, Any] = {**CONTROLS, **GEODETIC, **COURSE, **TURNING}
 WINDS = {
     "apparent_wind_speed_mps": "aws",
     "apparent_wind_angle_deg": "awa",
@@ -45,6 +50,7 @@ BODY: dict[str, Any] = {
 }
 FORMS: dict[str, tuple[dict[str, Any], float]] = {
     "bridge, once a second": (BRIDGE, 1.0),
+    "bridge, latitude and longitude": (SATELLITE, 1.0),
     "inertial unit, twice a second": (BODY, 2.0),
     "velocities by the earth, no rate of turn": (
         {
@@ -112,10 +118,13 @@ def export(
     w = (c[AHEAD] + 1j * c[ASIDE]) * np.exp(1j * (psi - by))
     heading = np.round(np.mod(c[HEADING] - np.degrees(by), 360.0), 2)
     r = c[RATE]
+    lat, lon = np.transpose([from_chart(DATUM, p.real, p.imag) for p in place - place[0]])
     return {
         "t": at,
         "n": place.real,
         "e": place.imag,
+        "lat": lat,
+        "lon": lon,
         "hdg": heading,
         "sog": np.round(np.abs(w) / KNOT, 2),
         "cog": np.round(np.mod(np.degrees(np.angle(w)), 360.0), 2),

@@ -10,7 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from bench.import_forms import AHEAD, ASIDE, BODY, BRIDGE, HEADING, KNOT, RATE, RUDDER, TURNS, Export
+from bench.import_forms import (
+    AHEAD,
+    ASIDE,
+    BODY,
+    BRIDGE,
+    HEADING,
+    KNOT,
+    RATE,
+    RUDDER,
+    SATELLITE,
+    TURNS,
+    Export,
+)
 
 
 @dataclass(frozen=True)
@@ -139,6 +151,13 @@ MISTAKES: tuple[PlantedMistake, ...] = (
         changed(n=lambda d: d["e"], e=lambda d: d["n"]),
         ("north and east are swapped",),
         {"north_m": "e", "east_m": "n"},
+    ),
+    PlantedMistake(
+        "latitude and longitude exchanged",
+        changed(lat=lambda d: d["lon"], lon=lambda d: d["lat"]),
+        ("latitude and longitude are exchanged",),
+        {"latitude_deg": "lon", "longitude_deg": "lat"},
+        SATELLITE,
     ),
     PlantedMistake(
         "earth-fixed velocities called surge and sway",

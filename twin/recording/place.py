@@ -18,6 +18,19 @@ CHART = ("north_m", "east_m")
 HEADING = "heading_true_north_deg"
 
 
+def no_latitude(columns: Mapping[str, np.ndarray]) -> str:
+    """Why the column of latitudes (N,) [deg] holds none; empty where it does."""
+    values = columns.get("latitude_deg", np.empty(0))
+    values = values[np.isfinite(values) & (np.abs(values) != 91.0)]  # 91: AIS, no position
+    if not values.size or float(np.median(np.abs(values))) <= 90.0:
+        return ""
+    return (
+        f"latitude_deg is {as_given(float(np.median(values)))} (median), and no latitude is beyond 90 deg: "
+        "latitude and longitude are exchanged, or its unit is another. In the map: swap their columns, or "
+        "give the unit."
+    )
+
+
 def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict[str, Any], list[str]]:
     """Columns with north/east and body velocities in place of latitude/longitude, earth or course velocities.
 

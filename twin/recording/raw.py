@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from twin.errors import DataError
 from twin.live.signals.channels import BY_NAME
 from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
 from twin.recording.formats import Format
 from twin.recording.formats.binary_tables import Packed
 from twin.recording.mapping import Key, Map, TimeColumn
-from twin.recording.place import FRAMED, placed, scaled
+from twin.recording.place import FRAMED, no_latitude, placed, scaled
 from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
     TimeAxis,
@@ -51,6 +52,8 @@ def through(
     notes = [*notes, *clock.notes]
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
     given = sorted(columns)
+    if why := no_latitude(columns):
+        raise DataError(f"{path}: {why}")
     columns, known, said = placed(clock.time_s, scaled(columns, by), by)
     slower = froude("time_s", by.froude_scale)
     step = by.time.rebuild if by.time else False

@@ -92,6 +92,8 @@ def _edit(check: Check, fix: str, columns: list[str]) -> Edit:
 
 
 def _swapped(check: Check, columns: list[str]) -> list[str]:
+    if "latitude and longitude are exchanged" in check.text:
+        return ["latitude_deg", "longitude_deg"]
     if "north and east are swapped" in check.text:
         return ["latitude_deg", "longitude_deg"] if "latitude_deg" in columns else ["north_m", "east_m"]
     return list(SPEEDS)

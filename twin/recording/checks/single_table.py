@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from twin.live.signals.geodesy import MAX_LATITUDE_DEG, datum, to_chart
 from twin.recording.checks.candidate_mistake import Single, changes, said, scaled
 from twin.recording.checks.undo import (
     EAST,
@@ -22,6 +23,7 @@ from twin.recording.checks.unit_mistakes import of_rate, of_speed
 from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.units import DEG_PER_RAD
 
+NEAR_DEG = 1e-4  # ten metres, over which the chart is as good as the globe
 HEADINGS: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str], ...] = (
     ("the heading counts from east, anticlockwise", lambda x: 90.0 - x, "sign = -1 and offset = 90"),
     ("the heading counts anticlockwise from north", lambda x: -x, "sign = -1"),
@@ -95,6 +97,40 @@ def sign_of_north(view: VoyageView) -> str:
     return f"sign = -1 for {'latitude_deg' if 'latitude_deg' in given else 'north_m'}"
 
 
+def exchanged(view: VoyageView) -> str:
+    """What the two columns of the place are called that stand in each other's place."""
+    return "latitude and longitude are exchanged" if _on_the_globe(view) else "north and east are swapped"
+
+
+def exchange(view: VoyageView) -> Undo:
+    """The place with its two columns in each other's place. Of latitude and longitude a degree is so many
+    metres as it would be there."""
+    if not _on_the_globe(view):
+        return lambda c: {NORTH: c[EAST], EAST: c[NORTH]}
+    at = view.voyage.meta["datum"]
+    latitude, longitude = at["latitude_deg"], at["longitude_deg"]
+    north, east = metres_a_degree(latitude, longitude)
+    true_north, true_east = metres_a_degree(longitude, latitude)
+    return lambda c: {NORTH: c[EAST] * true_north / east, EAST: c[NORTH] * true_east / north}
+
+
+def _on_the_globe(view: VoyageView) -> bool:
+    """Whether the place was given by a latitude and a longitude of which each could be the other."""
+    at = view.voyage.meta.get("datum") or {}
+    return (
+        "latitude_deg" in view.voyage.meta.get("given", ()) and abs(at["longitude_deg"]) <= MAX_LATITUDE_DEG
+    )
+
+
+def metres_a_degree(latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
+    """How many metres to the north and to the east a degree of latitude and one of longitude are there."""
+    here = datum(latitude_deg, longitude_deg)
+    ahead = to_chart(here, latitude_deg + NEAR_DEG, longitude_deg)
+    aside = to_chart(here, latitude_deg, longitude_deg + NEAR_DEG)
+    assert ahead and aside  # within MAX_LATITUDE_DEG
+    return ahead[0] / NEAR_DEG, aside[1] / NEAR_DEG
+
+
 def west(c: Columns) -> dict[str, np.ndarray]:
     """East counted as west: the column (N,) [m] reversed."""
     return {EAST: -c[EAST]}
@@ -157,7 +193,6 @@ def singles(view: VoyageView) -> tuple[Single, ...]:
         )
     earthly: Undo = lambda c: as_velocity(velocity(c) * np.exp(-1j * np.radians(c[HEADING])))  # noqa: E731
     swapped: Undo = lambda c: as_velocity(1j * velocity(c).conj() * np.exp(-1j * np.radians(c[HEADING])))  # noqa: E731
-    exchanged: Undo = lambda c: {NORTH: c[EAST], EAST: c[NORTH]}  # noqa: E731
     south: Undo = lambda c: {NORTH: -c[NORTH]}  # noqa: E731
     feet: Undo = lambda c: {NORTH: c[NORTH] * 0.3048, EAST: c[EAST] * 0.3048}  # noqa: E731
     v, p = frozenset(("velocity",)), frozenset(("place",))
@@ -181,8 +216,8 @@ def singles(view: VoyageView) -> tuple[Single, ...]:
             "body",
         ),
         Single(
-            said("north and east are swapped"),
-            changes(exchanged),
+            exchanged,
+            exchange,
             said("swap their columns"),
             "velocity_frame",
             (NORTH, EAST),
