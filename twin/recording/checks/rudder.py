@@ -14,6 +14,7 @@ from twin.recording.checks.voyage_view import VoyageView, fit
 RUDDER_SHARE = 0.15  # the rudder must explain this share of the changes of yaw rate to be asked for its sign
 HELD_RUDDER_DEG, HELD_TURN_DEG = 5.0, 30.0
 PROOF_SHARE = 0.5  # and this share to prove it
+WINDOWS_A_NUMBER = 10  # fewer windows for each number that is fitted agree with anything by chance
 LEAST_RUDDER_DEG = 0.7  # a ship that manoeuvres with less than this has it in radians
 
 
@@ -98,7 +99,7 @@ def rudder_gain(view: VoyageView, push: np.ndarray, r: np.ndarray, seconds: floa
         np.ones(first.size),
     ]
     both = np.isfinite(change) & np.isfinite(held) & np.isfinite(damping[0])
-    if np.count_nonzero(both) < 10:
+    if np.count_nonzero(both) < WINDOWS_A_NUMBER * (1 + len(damping)):
         return 0.0, 0.0
     others = [x[both] for x in damping]
     x, error, left = fit([held[both], *others], change[both])

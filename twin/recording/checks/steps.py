@@ -22,6 +22,7 @@ LEAST_STEPS = 6
 ALIKE = 0.25  # spread of the steps between two headings, in the step
 NEAR_NORTH_DEG, FAR_DEG = 30.0, 40.0
 STAYS = 10  # samples
+OWN = 0.5  # share of a step that its witness may make; a boat without way on is tossed to any course
 JUMP_DEG = 8.0
 
 
@@ -33,12 +34,13 @@ class StepSamples:
     t: np.ndarray
     psi: np.ndarray
     odd: np.ndarray  # (N-1,) [deg], on [-180, 180)
+    own: np.ndarray  # (N-1,) bool: most of it is a step of the heading, and not of what expects none
     noise: float  # [deg] of a step
 
     @property
     def big(self) -> np.ndarray:
-        """(B,) where the steps are that no compass noise makes."""
-        return np.flatnonzero(np.abs(self.odd) > max(LEAST_DEG, SIGMAS * self.noise))
+        """(B,) where the heading makes steps that no compass noise makes."""
+        return np.flatnonzero(self.own & (np.abs(self.odd) > max(LEAST_DEG, SIGMAS * self.noise)))
 
 
 def samples_of(view: VoyageView) -> StepSamples | None:
@@ -54,7 +56,7 @@ def samples_of(view: VoyageView) -> StepSamples | None:
     expected = expected_steps(view, t)
     odd = np.mod(np.diff(x) - expected + 180.0, 360.0) - 180.0
     odd = np.where((steps > 3.0 * usual) | ~np.isfinite(odd), 0.0, odd)
-    return StepSamples(t, x, odd, noise_of(odd))
+    return StepSamples(t, x, odd, np.abs(expected) < OWN * np.abs(odd), noise_of(odd))
 
 
 def expected_steps(view: VoyageView, t: np.ndarray) -> np.ndarray:
