@@ -221,7 +221,7 @@ def across_north(view: VoyageView, s: StepSamples) -> Check | None:
 
 def jump(view: VoyageView, s: StepSamples) -> Check | None:
     """One step or a few that stay, which neither the rate of turn nor the course made."""
-    big = np.array([i for i in s.big if np.abs(s.odd[i]) > JUMP_DEG and stays(s, i)], int)
+    big = np.array([i for i in s.big if np.abs(s.odd[i]) > JUMP_DEG and at_once(s, i) and stays(s, i)], int)
     if not big.size or big.size > 5:
         return None
     i = int(big[np.argmax(np.abs(s.odd[big]))])
@@ -241,6 +241,12 @@ def jump(view: VoyageView, s: StepSamples) -> Check | None:
         "that was set. "
         f"Cut the voyage there, or correct one part by {abs(s.odd[i]):.1f} deg.",
     )
+
+
+def at_once(s: StepSamples, i: int) -> bool:
+    """Whether the heading steps at once: what turns faster and slower is a turn, however quick."""
+    moved = np.abs(turned_off(np.diff(s.psi[max(i - 1, 0) : i + 3])))
+    return bool(np.sum(moved > 0.5 * abs(s.odd[i])) == 1)
 
 
 def stays(s: StepSamples, i: int) -> bool:
