@@ -34,13 +34,16 @@ class StepSamples:
     t: np.ndarray
     psi: np.ndarray
     odd: np.ndarray  # (N-1,) [deg], on [-180, 180)
-    own: np.ndarray  # (N-1,) bool: most of it is a step of the heading, and not of what expects none
+    # (N-1,) [deg] by how much the heading stepped: beyond the rate of turn; beside a course, which may be the
+    # one that stepped, at all
+    own: np.ndarray
     noise: float  # [deg] of a step
 
     @property
     def big(self) -> np.ndarray:
         """(B,) where the heading makes steps that no compass noise makes."""
-        return np.flatnonzero(self.own & (np.abs(self.odd) > max(LEAST_DEG, SIGMAS * self.noise)))
+        big = np.abs(self.odd) > max(LEAST_DEG, SIGMAS * self.noise)
+        return np.flatnonzero(big & (np.abs(self.odd - self.own) < OWN * np.abs(self.odd)))
 
 
 def samples_of(view: VoyageView) -> StepSamples | None:
@@ -56,7 +59,8 @@ def samples_of(view: VoyageView) -> StepSamples | None:
     expected = expected_steps(view, t)
     odd = np.mod(np.diff(x) - expected + 180.0, 360.0) - 180.0
     odd = np.where((steps > 3.0 * usual) | ~np.isfinite(odd), 0.0, odd)
-    return StepSamples(t, x, odd, np.abs(expected) < OWN * np.abs(odd), noise_of(odd))
+    own = turned_off(np.diff(x)) if view.derived("yaw_rate_degps") else odd
+    return StepSamples(t, x, odd, own, noise_of(odd))
 
 
 def expected_steps(view: VoyageView, t: np.ndarray) -> np.ndarray:
@@ -245,8 +249,7 @@ def jump(view: VoyageView, s: StepSamples) -> Check | None:
 
 def at_once(s: StepSamples, i: int) -> bool:
     """Whether the heading steps at once: what turns faster and slower is a turn, however quick."""
-    moved = np.abs(turned_off(np.diff(s.psi[max(i - 1, 0) : i + 3])))
-    return bool(np.sum(moved > 0.5 * abs(s.odd[i])) == 1)
+    return bool(np.sum(np.abs(s.own[max(i - 1, 0) : i + 2]) > OWN * abs(s.odd[i])) == 1)
 
 
 def stays(s: StepSamples, i: int) -> bool:
