@@ -9,7 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from twin.num import as_given, num, percent
+from twin.num import as_given, num, percent, readable
+from twin.study.calibration.calibration_lines import sizes_in_words
+from twin.study.diagnosis.tell_diagnosis import candidate_lines, weather_lines
+from twin.study.fleet.fleet_lines import size, slope
+from twin.study.instruments.instrument_lines import amount
+from twin.study.update.added import number_lines
 
 ROOT = Path(__file__).parents[1]
 FILES = sorted(
@@ -114,3 +119,80 @@ def test_the_pages_tell_a_number_by_the_same_rule():
     done = subprocess.run(["node", "-e", script], capture_output=True, text=True, timeout=60, check=True)
     told = [[text.replace("\u202f", "") for text in row] for row in json.loads(done.stdout)]
     assert told == [[num(x, 3), num(x, 2), as_given(x)] for x in values]
+
+
+COMPASS = {  # by hand: 0.1 rad is 5.7296 deg
+    "name": "bias", "value": 0.1, "low95": 0.08, "high95": 0.12, "sd": 0.01, "unit": "rad", "at_box_end": False,
+}  # fmt: skip
+GYRO = COMPASS | {"value": 0.01, "low95": 0.008, "high95": 0.012, "sd": 0.001, "unit": "rad/s"}
+
+
+def test_an_angle_is_told_in_degrees_and_its_file_keeps_radians():
+    told = readable(COMPASS)
+    assert [round(told[k], 3) for k in ("value", "low95", "high95", "sd")] == [5.730, 4.584, 6.875, 0.573]
+    assert (told["unit"], told["at_box_end"], COMPASS["value"]) == ("deg", False, 0.1)
+    assert (readable({"value": 5.0, "unit": "-"}), readable({"value": 5.0, "unit": "N"})["unit"]) == (
+        {"value": 5.0, "unit": ""},
+        "N",
+    )
+    assert round(readable({"value": 0.2, "unit": "1/rad"})["value"], 5) == 0.00349
+
+
+def candidate(number):
+    force = {"X_N": 0.0, "Y_N": 0.0, "N_Nm": 0.0}
+    return {
+        "effect": "HeadingBias", "probability": 0.9, "together_with": [], "parameters": [number],
+        "typical_force": force, "error_floor": None, "error_horizon_s": 120.0, "error_without": 9.0,
+        "error_with": 3.0, "cannot_be_told_from": [], "says": "",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("number, said", [(COMPASS, ("5.7", "deg")), (GYRO, ("0.57", "deg/s"))])
+def test_every_text_of_an_effect_tells_its_angles_in_degrees(number, said):
+    """Test: an angle of 0.1 rad and a rate of 0.01 rad/s in the texts of diagnose, add, fleet, calibrate and
+    instruments. Expected: degrees, with their unit, and no radians in any line."""
+    trend = {"slope": 0.1, "low95": 0.08, "high95": 0.12, "per": "month"}
+    cause = {"trend": trend, "number": number, "sizes": []}
+    texts = [
+        *candidate_lines(candidate(number)),
+        *weather_lines([candidate(number)]),
+        *number_lines({"HeadingBias": {"bias": number}}),
+        size(number),
+        sizes_in_words({"bias": number}),
+        amount(number["value"], number["unit"]),
+    ]
+    assert not any(" rad" in line for line in texts)
+    assert sum(said[0] in line and f" {said[1]}" in line for line in texts) == 6
+    assert slope(cause) == "+5.7 a month (+4.6 to +6.9)"
+
+
+def told_with_its_unit(path):
+    """Whether an f-string of the file tells the unit of a number of an effect or a ship."""
+    told = {
+        ast.unparse(v.value)
+        for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.JoinedStr)
+        for v in node.values if isinstance(v, ast.FormattedValue)
+    }  # fmt: skip
+    return any(text.endswith(("['unit']", ".unit")) for text in told)
+
+
+def test_what_the_study_tells_with_a_unit_goes_through_the_one_table():
+    """Expected: each file of the study that tells the unit of a number reads it through `readable`, but those
+    that tell metres, newtons and a ship's particulars."""
+    si = {"fall.py", "first_estimate.py", "first_trial.py"}
+    files = [p for p in (ROOT / "twin" / "study").rglob("*.py") if told_with_its_unit(p)]
+    assert len(files) > len(si)
+    assert {p.name for p in files if "readable" not in p.read_text()} == si
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node")
+def test_the_pages_tell_an_angle_by_the_same_table():
+    numbers = [COMPASS, GYRO, {"value": 0.2, "unit": "1/rad"}, {"value": 2.0, "unit": "-"}]
+    script = (ROOT / "twin" / "report" / "number.js").read_text() + (
+        f"console.log(JSON.stringify({json.dumps(numbers)}.map(readable)));"
+    )
+    done = subprocess.run(["node", "-e", script], capture_output=True, text=True, timeout=60, check=True)
+    for told, number in zip(json.loads(done.stdout), numbers, strict=True):
+        expected = readable(number)
+        assert told["unit"] == expected["unit"] and told["value"] == pytest.approx(expected["value"])
+        assert all(told[k] == pytest.approx(expected[k]) for k in ("low95", "high95", "sd") if k in number)

@@ -2,11 +2,23 @@
 
 `num`: what was measured or estimated, to so many significant digits, its known zeros included (2.0, 160).
 `as_given`: what was declared, or read off a clock (a setting, a limit, a time), without further zeros (120).
+`readable`: the unit in which a number is told: files and JSON hold radians, and a person reads degrees.
 """
 
-from math import isfinite
+from collections.abc import Mapping
+from math import isfinite, pi
+from typing import Any
 
 LEAST_POWER, GREATEST_POWER = -4, 12  # powers of ten between which a number is told by its digits alone
+READABLE = {  # unit in files and JSON -> unit that is told, and what the number is multiplied by
+    "rad": ("deg", 180.0 / pi),
+    "rad/s": ("deg/s", 180.0 / pi),
+    "1/rad": ("1/deg", pi / 180.0),
+}
+IN_ITS_UNIT = (  # entries beside `unit` that are in that unit
+    "value", "sd", "low95", "high95", "lo", "hi", "low", "high", "before", "in_ship_file", "slope",
+    "unseen_below",
+)  # fmt: skip
 
 
 def num(value: float, digits: int = 2, sign: bool = False) -> str:
@@ -33,3 +45,11 @@ def as_given(value: float, digits: int = 6) -> str:
 def percent(share: float) -> str:
     """A share or a probability, in whole per cent."""
     return f"{100.0 * share:.0f} %"
+
+
+def readable(number: Mapping[str, Any]) -> dict[str, Any]:
+    """A number with its `unit`, its interval and what else is in that unit, as a person reads it: angles in
+    degrees. `unit` is empty where there is none."""
+    unit, k = READABLE.get(number["unit"], (number["unit"], 1.0))
+    sizes = {key: k * number[key] for key in IN_ITS_UNIT if number.get(key) is not None}
+    return dict(number) | sizes | {"unit": "" if unit == "-" else unit}

@@ -220,3 +220,26 @@ def test_an_effect_of_an_actuator_that_the_ship_has_not_is_refused():
     with pytest.raises(SettingsError, match="of one actuator"):
         find("ThrusterWear")
     assert all(e.__doc__ and e.source for e in OF_ACTUATORS)
+
+
+@pytest.mark.parametrize("effect, said", [
+    ("ThrusterWear.port", "The port thruster gives less thrust"),
+    ("ThrusterWear.bow", "The bow thruster gives less thrust"),
+    ("AngleOffset.main", "The main rudder's zero is not where"),
+    ("SteeringWear.main", "The rudder behind the main propeller gives less force"),
+    ("ActuatorLag.azimuth_1", "The azimuth 1 answers late"),
+])  # fmt: skip
+def test_the_sentence_of_an_effect_names_its_actuator_as_a_seafarer_does(effect, said):
+    """Expected: name and kind of the ship's actuator, neither of them twice; without a ship its name alone;
+    of a family no name."""
+    main = {
+        "name": "main", "kind": "propeller", "channels": ["rate_rpm", "angle_deg"], "x_m": -0.4,
+        "diameter_m": 0.1, "K_T0": 0.4, "K_T1": -0.4, "rudder_area_m2": 0.01,
+    }  # fmt: skip
+    bow = PORT | {"name": "bow", "kind": "tunnel_thruster"}
+    pod = PORT | {"name": "azimuth_1", "kind": "azimuth", "channels": ["command", "angle_deg"]}
+    ship = ship_with(PORT, main, bow, pod)
+    assert find(effect).sentence(ship).startswith(said) and "this actuator" not in find(effect).sentence(ship)
+    owner = effect.partition(".")[2]
+    assert f"actuator {owner}" in find(effect).sentence().lower()
+    assert all("this actuator" in e.sentence().lower() for e in OF_ACTUATORS)

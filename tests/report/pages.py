@@ -175,7 +175,7 @@ def made(folder, track, model, ship):
     write(folder / "Comparison.html", "compare", compared, tracks, model, voyages=voyages)
     write(folder / "Diagnosis.html", "diagnose", diagnosis(one.track.name), tracks, model, voyages=voyages)
     write(folder / "Update.html", "add", addition(), tracks, model, before=Model.of(ship), voyages=voyages)
-    number = {"name": "Y_v", "before": 1.0, "value": 1.1, "sd": 0.1, "excited": True}
+    number = {"name": "Y_v", "before": 1.0, "value": 1.1, "sd": 0.1, "unit": "-", "excited": True}
     held = {
         "held_out": ERRORS,
         "held_out_is": "last third",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import at_least_one, several
-from twin.num import as_given, num
+from twin.num import as_given, num, readable
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
@@ -79,6 +79,7 @@ class Calibration(Result):
             "before": "before",
             "value": "now",
             "sd": "+- (sd)",
+            "unit": "unit",
             "excited": "excited",
         }
         regimes = {"regime": "while", "horizon_s": "horizon [s]", "position_m": "error [m]"}
@@ -89,7 +90,7 @@ class Calibration(Result):
             (
                 Bars(f"Open-loop position error ({self.data['held_out_is']})", "m", "at", both, rows),
                 PageTable("By what the ship did", regimes, self.data["by_regime"]),
-                PageTable("Derivatives", shown, self.data["derivatives"]),
+                PageTable("Derivatives", shown, [readable(d) for d in self.data["derivatives"]]),
             ),
         )
 

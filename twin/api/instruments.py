@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from twin.api.result import Progress, Result, quietly
 from twin.api.voyages import at_least_one
 from twin.errors import UsageError
+from twin.num import readable
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
@@ -79,7 +80,7 @@ class InstrumentCheck(Result):
             f"{seen[0].upper()}{seen[1:]}.",
             parts=(
                 Bars("What was seen", "", "called", bayes, faults),
-                PageTable("Numbers (95 %)", columns | more, self.data["numbers"]),
+                PageTable("Numbers (95 %)", columns | more, [readable(n) for n in self.data["numbers"]]),
             ),
         )
 

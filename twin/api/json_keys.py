@@ -179,9 +179,10 @@ ADD = (
 CALIBRATE = (
     *ABOUT,
     JsonKey("derivatives[].name", "", "a hydrodynamic derivative, as in docs/notation.md"),
-    JsonKey("derivatives[].before", "prime", "its value in the ship file that was given"),
-    JsonKey("derivatives[].value", "prime", "its value now"),
-    JsonKey("derivatives[].sd", "prime", "standard error"),
+    JsonKey("derivatives[].before", "", "its value in the ship file that was given"),
+    JsonKey("derivatives[].value", "", "its value now"),
+    JsonKey("derivatives[].sd", "", "standard error"),
+    JsonKey("derivatives[].unit", "", "its unit (-: prime)"),
     JsonKey("derivatives[].excited", "", "whether the voyages tell of it"),
     JsonKey("unexcited[]", "", "derivatives whose prior was kept", "there are some"),
     JsonKey("fitted_by", "", "paths (three ship lengths ahead) or steps (each next reading)"),

@@ -165,8 +165,8 @@ class Effect:
         return tuple(Param(f.name, **f.metadata) for f in fields(cls))  # type: ignore[arg-type]
 
     @classmethod
-    def sentence(cls) -> str:
-        """What an engineer would say of it in a report."""
+    def sentence(cls, ship: ShipLike | None = None) -> str:
+        """What an engineer would say of it in a report; `ship`: whose parts it is told of."""
         return " ".join((cls.__doc__ or "").split())
 
     @classmethod

@@ -79,7 +79,7 @@ def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
     return {
         "name": effect.__name__,
         "kind": effect.kind,
-        "doc": effect.sentence(),
+        "doc": effect.sentence(ship),
         "formula": formula(effect),
         "needs": inputs(effect),
         "needs_ship": list(effect.needs_ship),
@@ -111,7 +111,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     lines = [
         f"{bold(effect.__name__)}  {effect.kind}: {KINDS[effect.kind]}",
         "",
-        *textwrap.wrap(effect.sentence(), width),
+        *textwrap.wrap(effect.sentence(ship), width),
         "",
     ]
     lines += [f"  {line}".rstrip() for line in formula(effect).splitlines()] + [""]

@@ -9,7 +9,7 @@ function rankingSection() {
   for (const c of RESULT.resembles || []) out.push(el("p.note", null, `It resembles this, which is not in the catalogue of effects. ${c.says}`), candidate(c));
   for (const c of list) out.push(candidate(c));
   if (!out.length) out.push(el("p.note", null, "No cause is likely enough to be shown."));
-  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, allowed for whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map((p) => `${p.name} ${num(p.value)} ${p.unit === "-" ? "" : p.unit}`.trim()).join(", ")})`).join("; ")));
+  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, allowed for whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map(readable).map((p) => withUnit(`${p.name} ${num(p.value)}`, p)).join(", ")})`).join("; ")));
   if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log Bayes factor behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
   const missing = (RESULT.answer || {}).lasting || RESULT.missing || [];
   if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));
@@ -47,8 +47,8 @@ function momentsSection() {
 }
 
 /** Many numbers that follow each other in time: a curve, with its 95 % band. */
-function curve(list) {
-  const stems = [...new Set(list.map((p) => p.name.replace(/_?\d+$/, "")))];
+function curve(numbers) {
+  const list = numbers.map(readable), stems = [...new Set(list.map((p) => p.name.replace(/_?\d+$/, "")))];
   return el("div", null, stems.map((stem) => {
     const part = list.filter((p) => p.name.replace(/_?\d+$/, "") === stem), all = part.flatMap((p) => [p.low95, p.high95, 0]), low = Math.min(...all), high = Math.max(...all), wide = 320, tall = 70;
     const X = (i) => (wide * i) / Math.max(part.length - 1, 1), Y = (v) => 4 + ((tall - 8) * (high - v)) / (high - low || 1), at = (key) => part.map((p, i) => `${X(i).toFixed(1)},${Y(p[key]).toFixed(1)}`);
@@ -60,11 +60,10 @@ function curve(list) {
 }
 
 /** A number with its 95 % interval; the dashed mark is zero. */
-function parameter(p) {
-  const lo = Math.min(p.low95, 0), hi = Math.max(p.high95, 0), P = (x) => `${(100 * (x - lo)) / (hi - lo || 1)}%`;
+function parameter(number) {
+  const p = readable(number), lo = Math.min(p.low95, 0), hi = Math.max(p.high95, 0), P = (x) => `${(100 * (x - lo)) / (hi - lo || 1)}%`;
   const draw = el("span.whisker", null, el(".z", { style: { left: P(0) } }), el(".w", { style: { left: P(p.low95), width: `calc(${P(p.high95)} - ${P(p.low95)})` } }), el(".p", { style: { left: P(p.value) } }));
-  const unit = p.unit === "-" ? "" : ` ${p.unit}`;
-  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, `${num(p.value)}${unit}`), el("span.note", null, `95 %: ${num(p.low95)} to ${num(p.high95)}${unit}${p.in_ship_file === undefined ? "" : `; ship file ${num(p.in_ship_file)}`}`));
+  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, withUnit(num(p.value), p)), el("span.note", null, `95 %: ${num(p.low95)} to ${withUnit(num(p.high95), p)}${p.in_ship_file === undefined ? "" : `; ship file ${num(p.in_ship_file)}`}`));
 }
 
 function manoeuvreSection() {

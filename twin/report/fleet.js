@@ -1,11 +1,18 @@
 // The fleet: one table, the ship with most wrong first, and each ship's history.
 const STATES = { missing: ["bad", "missing"], weather: ["fair", "weather only"], unknown: ["fair", "unknown"], undecided: ["fair", "undecided"], nothing_missing: ["good", "nothing missing"], not_asked: ["fair", "not judged"], reference: ["good", "calibrated on"] };
 const day = (v) => (v && (v.start_time_utc ? v.start_time_utc.slice(0, 10) : v.voyage)) || "";
-const unit = (p) => (p.unit === "-" ? "" : ` ${p.unit}`);
-const size = (p) => (p ? `${p.name} ${num(p.value, 2)}${unit(p)} (${num(p.low95, 2)} to ${num(p.high95, 2)}${p.at_box_end ? ", at the end of its box" : ""})` : "");
+const size = (number) => {
+  if (!number) return "";
+  const p = readable(number);
+  return `${withUnit(`${p.name} ${num(p.value, 2)}`, p)} (${num(p.low95, 2)} to ${num(p.high95, 2)}${p.at_box_end ? ", at the end of its box" : ""})`;
+};
 const percent = (x) => (x === null || x === undefined ? "–" : `${Math.round(100 * x)} %`);
 const signed = (x) => `${x < 0 ? "−" : "+"}${num(Math.abs(x), 2)}`;
-const slope = (t) => (t ? `${signed(t.slope)} a ${t.per} (${signed(t.low95)} to ${signed(t.high95)})` : "");
+const slope = (trend, unit) => {
+  if (!trend) return "";
+  const t = readable({ ...trend, unit });
+  return `${signed(t.slope)} a ${t.per} (${signed(t.low95)} to ${signed(t.high95)})`;
+};
 const badge = (state) => { const [mood, word] = STATES[state] || ["fair", state]; return el(`span.badge.${mood}`, null, word); };
 const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 
@@ -24,7 +31,7 @@ function ranking() {
       el("td.n", null, i ? "" : String(s.rank)),
       el("td.d", null, i ? "" : el("a", { href: `#ship-${s.rank}` }, s.ship)),
       el("td.d", null, c ? [el("b", null, c.effect), c.belongs_to === "voyage" ? " (weather)" : ""] : badge(s.state)),
-      el("td.d", null, day(c ? c.since : s.since)), el("td", null, c ? size(c.number) : ""), el("td", null, c ? slope(c.trend) : ""),
+      el("td.d", null, day(c ? c.since : s.since)), el("td", null, c ? size(c.number) : ""), el("td", null, c ? slope(c.trend, c.number?.unit) : ""),
       el("td.d", null, c && c.share_of_error !== null ? [el("span.bar100", { style: { width: "70px" } }, el("i", { style: { width: `${100 * Math.min(Math.max(c.share_of_error, 0), 1)}%` } })), percent(c.share_of_error)] : ""),
       el("td.d", null, i ? "" : chance(s.over_months))));
   });
@@ -38,19 +45,19 @@ function chance(m) {
 
 /** A size over the voyages with its 95 % intervals; hollow: weighed, and not named. */
 function history(cause) {
-  const list = cause.sizes, wide = 420, tall = 110, left = 52, foot = 18;
+  const list = cause.sizes.map(readable), wide = 420, tall = 110, left = 52, foot = 18;
   const days = list.map((p) => Date.parse(p.start_time_utc || "")), dated = days.every((d) => isFinite(d)) && new Set(days).size > 1;
   const at = dated ? days.map((d) => (d - Math.min(...days)) / (Math.max(...days) - Math.min(...days))) : list.map((_, i) => (list.length > 1 ? i / (list.length - 1) : 0.5));
   const all = list.flatMap((p) => [p.low95, p.high95, 0]), low = Math.min(...all), high = Math.max(...all);
   const X = (i) => left + 8 + at[i] * (wide - left - 16), Y = (v) => 6 + ((tall - foot - 12) * (high - v)) / (high - low || 1);
-  const drawing = shape("svg", { viewBox: `0 0 ${wide} ${tall}`, width: wide, height: tall, role: "img", "aria-label": `${cause.effect}, ${list[0].name} over ${list.length} voyages, ${list.map((p) => num(p.value)).join(", ")}${unit(list[0])}` });
+  const drawing = shape("svg", { viewBox: `0 0 ${wide} ${tall}`, width: wide, height: tall, role: "img", "aria-label": `${cause.effect}, ${list[0].name} over ${list.length} voyages, ${withUnit(list.map((p) => num(p.value)).join(", "), list[0])}` });
   const word = (x, y, text, anchor) => { const node = shape("text", { x, y, "text-anchor": anchor, class: "mark" }); node.textContent = text; drawing.append(node); };
   for (const v of new Set([low, 0, high])) if (v === 0 || Math.abs(Y(v) - Y(0)) > 12) word(left - 4, Y(v) + 4, num(v, 2), "end");
   drawing.append(shape("path", { d: `M${left} ${Y(0)}H${wide}`, class: "nought" }), shape("polyline", { points: list.map((p, i) => `${X(i)},${Y(p.value)}`).join(" "), class: "way" }));
   list.forEach((p, i) => drawing.append(shape("path", { d: `M${X(i)} ${Y(p.low95)}V${Y(p.high95)}`, class: "middle" }), shape("circle", { cx: X(i), cy: Y(p.value), r: 4, class: p.named ? "named" : "weighed" })));
   word(list.length > 1 ? left + 8 : X(0), tall - 3, day(list[0]), list.length > 1 ? "start" : "middle");
   if (list.length > 1) word(wide - 8, tall - 3, day(list[list.length - 1]), "end");
-  return el("div", null, el("code", null, `${cause.effect}: ${list[0].name}${unit(list[0])}`), el(".scroll", { tabIndex: 0, role: "group", "aria-label": drawing.getAttribute("aria-label") }, drawing), el("span.note", null, `named on ${cause.named_on} of ${cause.of_voyages} voyages, since ${day(cause.since)}; ${cause.trend ? slope(cause.trend) : "three sizes make a trend"}`));
+  return el("div", null, el("code", null, withUnit(`${cause.effect}: ${list[0].name}`, list[0])), el(".scroll", { tabIndex: 0, role: "group", "aria-label": drawing.getAttribute("aria-label") }, drawing), el("span.note", null, `named on ${cause.named_on} of ${cause.of_voyages} voyages, since ${day(cause.since)}; ${cause.trend ? slope(cause.trend, cause.number?.unit) : "three sizes make a trend"}`));
 }
 
 function ship(s) {

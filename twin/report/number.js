@@ -18,3 +18,14 @@ function asGiven(x, digits = 6) {
 }
 
 const thin = (text) => text.replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, "\u202f");
+
+const READABLE = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI], "1/rad": ["1/deg", Math.PI / 180] };
+
+/** A number with its unit and what else is in that unit, as a person reads it: angles in degrees; no unit is empty. */
+function readable(p) {
+  const [unit, k] = READABLE[p.unit] || [p.unit, 1], told = { ...p, unit: unit === "-" ? "" : unit };
+  for (const key of ["value", "sd", "low95", "high95", "before", "in_ship_file", "slope"]) if (typeof p[key] === "number") told[key] = k * p[key];
+  return told;
+}
+
+const withUnit = (text, p) => `${text} ${p.unit}`.trim();

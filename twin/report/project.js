@@ -17,7 +17,7 @@ function shipSection() {
   const s = DATA.about;
   if (!DATA.file) return section("Ship", null, el("p.note", null, "No ship file yet. A first model of the main particulars:"), command("twin init NAME --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o ship.toml"));
   const rows = s.particulars.map((p) => el("tr", null, el("td", null, p.name), el("td.n", null, `${asGiven(p.value, 5)}${p.unit === "-" ? "" : ` ${p.unit}`}`), el("td", null, p.doc), el("td", null, p.source || "usual value")));
-  const effects = s.effects.length ? s.effects.map((e) => el("p.note", null, `${e.name}: ${e.numbers.map((n) => `${n.name.replaceAll("_", " ")} ${asGiven(n.value, 4)}${n.unit === "-" ? "" : ` ${n.unit}`}`).join(", ")}`)) : el("p.note", null, "The core alone: no effect was added.");
+  const effects = s.effects.length ? s.effects.map((e) => el("p.note", null, `${e.name}: ${e.numbers.map((n) => `${n.name.replaceAll("_", " ")} ${withUnit(asGiven(n.value, 4), n)}`).join(", ")}`)) : el("p.note", null, "The core alone: no effect was added.");
   return section(`Ship: ${s.ship}`, `${DATA.file}, ${s.calibrated ? "calibrated to reference voyages" : "not calibrated yet"}`, effects, el("details", null, el("summary", null, `${rows.length} particulars`), table(["number", ">value", "meaning", "source"], rows)));
 }
 

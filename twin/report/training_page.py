@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from twin.num import as_given, num, percent
+from twin.num import as_given, num, percent, readable
 from twin.report.curves import Curve, Curves
 from twin.report.result_page import Bars, PageTable, result_page
 
@@ -29,7 +29,7 @@ def training_page(result: Result) -> str:
             *(_bars(held.get("by_horizon", []), *what) for what in ERRORS),
             *(_curves(result["curve"], stage) for stage in dict.fromkeys(row[0] for row in result["curve"])),
             PageTable("What it is bounded by", {"is": "bound", "value": "value"}, _bounds(result)),
-            PageTable("Where it is believed", INPUTS, result["bounds"]["inputs"]),
+            PageTable("Where it is believed", INPUTS, [readable(i) for i in result["bounds"]["inputs"]]),
             PageTable("Voyages", {"part": "part", "name": "stretch"}, _parts(result["parts"])),
             PageTable("Files", {"name": "voyage", "began": "began", "sha256": "sha256"}, _files(result)),
         ),

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.num import READABLE
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.report.series import packed, stitched
@@ -14,13 +15,10 @@ from twin.study.reference.sailed import fed
 from twin.study.track.track import READINGS, STATE, Track
 
 KNOT = 1852.0 / 3600.0
-BRIDGE: dict[str, tuple[str, float]] = {  # unit of a number -> unit of the bridge, what it is multiplied by
-    "rad": ("deg", degrees(1.0)),
-    "rad/s": ("deg/s", degrees(1.0)),
+BRIDGE = READABLE | {  # unit of a number -> unit of the bridge, what it is multiplied by
     "m/s": ("kn", 1.0 / KNOT),
     "N": ("kN", 1e-3),
     "N m": ("MN m", 1e-6),
-    "1/rad": ("1/deg", 1.0 / degrees(1.0)),
 }
 SHARES = ("extra", "loss", "scale", "share", "slip")  # numbers without unit that are parts of a whole
 WAYS = {  # axis -> in words, where the force is positive, and where it is negative

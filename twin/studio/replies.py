@@ -72,6 +72,8 @@ def page_files() -> dict[str, tuple[str, bytes]]:
         if kind and file.is_file():
             path = "/" if file.name == "page.html" else f"/app/{file.name}"
             out[path] = (f"{kind}; charset=utf-8", file.read_bytes())
-    number = (files("twin.report") / "number.js").read_text(encoding="utf-8") + "export { asGiven, num };\n"
+    number = (files("twin.report") / "number.js").read_text(
+        encoding="utf-8"
+    ) + "export { asGiven, num, readable };\n"
     out["/app/number.js"] = (f"{KINDS['js']}; charset=utf-8", number.encode())  # the same on report pages
     return out

@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.api.simulation import simulate
 from twin.errors import SettingsError
-from twin.num import as_given
+from twin.num import as_given, readable
 from twin.physics.ship import Derivatives, Ship
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
@@ -95,7 +95,9 @@ def described(ship: Ship) -> dict[str, Any]:
 
 
 def _effect(effect: Any) -> dict[str, Any]:
-    numbers = [{"name": p.name, "unit": p.unit, "value": getattr(effect, p.name)} for p in effect.params()]
+    numbers = [
+        readable({"name": p.name, "unit": p.unit, "value": getattr(effect, p.name)}) for p in effect.params()
+    ]
     return {"name": type(effect).__name__, "numbers": numbers}
 
 

@@ -120,6 +120,14 @@ class Actuator:
         """What is recorded of it, as physics calls it."""
         return tuple(CHANNELS_OF[c].attribute for c in self.channels)
 
+    def called(self, turned: bool = False) -> str:
+        """What a seafarer calls it: "port propeller", "bow thruster"; `turned`: what its angle is of, such as
+        "port rudder"."""
+        words, kind = self.name.replace("_", " "), KINDS[self.kind]
+        noun = kind.turned if turned and kind.turned else kind.noun
+        known = set(noun.split()) & set(words.lower().split())
+        return words if known else f"{words} {noun}"
+
     def columns(self) -> tuple[str, ...]:
         """Its channels by their whole names, as a voyage has them."""
         return tuple(f"{self.name}.{c}" for c in self.channels)

@@ -117,7 +117,8 @@ ForceOf = Callable[[OneActuator, Orders, Number, Number, Number, ShipLike], core
 
 class Kind(NamedTuple):
     """`needs`: attributes that must be recorded beside one that says how hard it pushes; `legs`: whether what
-    carries it turns with it; `reads`: the ship's derivatives on which its force depends."""
+    carries it turns with it; `reads`: the ship's derivatives on which its force depends; `noun`: what a
+    seafarer calls it; `turned`: what its angle is of, where that is a part of its own."""
 
     force: ForceOf
     needs: tuple[str, ...]
@@ -125,6 +126,8 @@ class Kind(NamedTuple):
     doc: str
     legs: bool = False
     reads: tuple[str, ...] = ()
+    noun: str = "thruster"
+    turned: str = ""
 
 
 def push(a: OneActuator, orders: Orders, u_a: Number, ship: ShipLike) -> Number:
@@ -254,11 +257,20 @@ def propeller(a: OneActuator, orders: Orders, u: Number, v: Number, r: Number, s
 OF_WAKE = ("t", "w", "epsilon", "kappa", "C_L", "t_R", "a_H", "x_H", "gamma_v", "gamma_r", "gamma_a")
 IN_WAKE = "on a shaft, with or without a rudder in its slipstream"
 KINDS: dict[str, Kind] = {
-    "propeller": Kind(propeller, (), ("angle",), IN_WAKE, reads=OF_WAKE),
-    "controllable_pitch": Kind(propeller, ("pitch",), ("angle",), "a shaft whose blades turn", reads=OF_WAKE),
+    "propeller": Kind(propeller, (), ("angle",), IN_WAKE, False, OF_WAKE, "propeller", "rudder"),
+    "controllable_pitch": Kind(
+        propeller, ("pitch",), ("angle",), "a shaft whose blades turn", False, OF_WAKE, "propeller", "rudder"
+    ),
     "fixed_thruster": Kind(fixed, (), (), "pushes along the ship"),
-    "azimuth": Kind(azimuth, ("angle",), (), "turns all round; its angle: where it pushes the ship to", True),
-    "waterjet": Kind(steered, ("angle",), (), "its angle is counted like a rudder's"),
-    "outboard": Kind(outboard, ("angle",), (), "its angle is counted like a rudder's", True),
+    "azimuth": Kind(
+        azimuth,
+        ("angle",),
+        (),
+        "turns all round; its angle: where it pushes the ship to",
+        True,
+        noun="azimuth thruster",
+    ),
+    "waterjet": Kind(steered, ("angle",), (), "its angle is counted like a rudder's", noun="waterjet"),
+    "outboard": Kind(outboard, ("angle",), (), "its angle is counted like a rudder's", True, noun="outboard"),
     "tunnel_thruster": Kind(tunnel, (), (), "pushes to starboard when told to go ahead"),
 }

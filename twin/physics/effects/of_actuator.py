@@ -21,6 +21,22 @@ class OfActuator(Effect):
 
     actuator: ClassVar[str] = ""
     recorded: ClassVar[tuple[str, ...]] = ()  # one of these must be recorded of it
+    of_angle: ClassVar[bool] = False  # whether it is of what the actuator's angle turns
+
+    @classmethod
+    def sentence(cls, ship: ShipLike | None = None) -> str:
+        """The family's sentence with the actuator's name, and of a ship also with what it is: the port
+        propeller, the bow thruster."""
+        owner = next((a for a in ship.actuators if a.name == cls.actuator), None) if ship else None
+        name = (
+            f"the {owner.called(cls.of_angle)}"
+            if owner
+            else f"actuator {cls.actuator}"
+            if cls.actuator
+            else "this actuator"
+        )
+        text = super().sentence(ship).replace("this actuator", name)
+        return text.replace("This actuator", name[0].upper() + name[1:])
 
     @classmethod
     def suits(cls, a: Actuator) -> bool:

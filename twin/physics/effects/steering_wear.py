@@ -10,7 +10,7 @@ from .of_actuator import ActuatorForce
 
 
 class SteeringWear(ActuatorForce):
-    """The rudder behind this propeller gives less force at the same angle: the ship answers late and turns
+    """The rudder behind this actuator gives less force at the same angle: the ship answers late and turns
     wider."""
 
     recorded = ("angle",)

@@ -3,7 +3,7 @@
 import { address, ask, files, start, state } from "/app/api.js";
 import { again, doing } from "/app/main.js";
 import { boxes, button, card, command, el, field, table } from "/app/dom.js";
-import { asGiven, num } from "/app/number.js";
+import { asGiven, num, readable } from "/app/number.js";
 import { chart } from "/app/draw.js";
 import { seriesCard } from "/app/compare.js";
 import { timeView } from "/app/plot.js";
@@ -46,7 +46,7 @@ function asker(item) {
 function answer(a) {
   const d = a.result, view = timeView(), x = d.horizons.map((h) => h.horizon_s), line = (key, name, look) => ({ name, x, y: d.horizons.map((h) => h[key].position_mae_m), look, points: true });
   const heads = ["after", ["before [m]"], ["after [m]"], ["expected [m]"], ["before [deg]"], ["after [deg]"]], rows = d.horizons.map((h) => [`${asGiven(h.horizon_s)} s`, h.before.position_mae_m, h.after.position_mae_m, h.noise_floor?.position_mae_m, h.before.heading_mae_deg, h.after.heading_mae_deg]);
-  const numbers = Object.entries(d.parameters).flatMap(([e, list]) => Object.entries(list).map(([n, p]) => [e, n.replaceAll("_", " "), p.value, p.low95, p.high95, p.unit]));
+  const numbers = Object.entries(d.parameters).flatMap(([e, list]) => Object.entries(list).map(([n, p]) => [n, readable(p)]).map(([n, p]) => [e, n.replaceAll("_", " "), p.value, p.low95, p.high95, p.unit]));
   const extra = { name: (key) => (key === "before" ? "before" : key === "after" ? "after" : "model"), look: (key) => (key === "before" ? "c-second" : "c-model") };
   return [el("section.card", { "aria-label": "In a sentence" }, el(".head", null, el(`span.badge.${d.accepted ? "good" : "fair"}`, null, d.accepted ? `proved, and written to ${d.output}` : "not proved, nothing was written")), el("p.big", null, d.verdict), a.job.said ? el("p", null, a.job.said) : null, undo(a)),
     el(".two", null, card("Held-out error, before and after", chart("Held-out position error", [line("before", "before", "c-second"), line("after", "after", "c-model"), { name: "expected", x, y: d.horizons.map((h) => h.noise_floor?.position_mae_m ?? NaN), look: "c-expected dashed" }], { zero: "both", x: "seconds ahead", y: "m" }), saved("Held-out error", heads, rows, table("Open loop, on voyages that were not used to fit it", heads, rows.map((row) => row.map((c, i) => (i ? el("span", { title: String(c) }, num(c)) : c)))))),

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from twin.num import as_given, num
+from twin.num import as_given, num, readable
 from twin.recording.checks import losses, whose
 from twin.study.calibration.calibration_record import PARTS
 from twin.study.estimation.start import waves_in_words
@@ -33,33 +33,33 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     )
     lines += [
         "  the instruments show it on each reference voyage alike, whatever the ship is: now part of the "
-        f"model ({name}: {_sizes(numbers)})"
+        f"model ({name}: {sizes_in_words(numbers)})"
         for name, numbers in result["instruments"].items()
     ]
     if gear := result["gear"]:
         lines.append(
             "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "
-            f"({PARTS['gear'].__name__}: {_sizes(gear)})"
+            f"({PARTS['gear'].__name__}: {sizes_in_words(gear)})"
         )
     lines += [
         f"  {name.partition('.')[2]} lags behind what was recorded of it, its order: that is now part of the "
-        f"model ({name}: {_sizes(numbers)})"
+        f"model ({name}: {sizes_in_words(numbers)})"
         for name, numbers in result["actuator_lags"].items()
     ]
     if antenna := result["antenna"]:
         lines.append(
             "  position is measured elsewhere than the ship file says: the place is now part of the model "
-            f"({PARTS['antenna'].__name__}: {_sizes(antenna)})"
+            f"({PARTS['antenna'].__name__}: {sizes_in_words(antenna)})"
         )
     if wind := result["wind"]:
         lines.append(
             "  wind pushed the ship on these voyages: its force is now part of the model "
-            f"({PARTS['wind'].__name__}: {_sizes(wind)})"
+            f"({PARTS['wind'].__name__}: {sizes_in_words(wind)})"
         )
     if compass := result["compass"]:
         lines.append(
             "  speed over ground is turned by a compass that deviates with the heading: that is now part of "
-            f"the model ({PARTS['compass'].__name__}: {_sizes(compass)})"
+            f"the model ({PARTS['compass'].__name__}: {sizes_in_words(compass)})"
         )
     lines += [
         f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "
@@ -70,14 +70,14 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"baseline of this ship: {i['name']} {num(i['value'], 3)} +- {num(i['sd'], 1)} {i['unit']} (allowed "
-        "for by twin diagnose)"
+        f"baseline of this ship: {sizes_in_words({i['name']: i})} (allowed for by twin diagnose)"
         for i in result["usual"]
     ]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
     lines += [
         f"{d['name']:<10}{num(d['before'], 4):>11}{num(d['value'], 4):>11}{num(d['sd'], 2):>9}"
-        for d in result["derivatives"]
+        + f" {d['unit']}".rstrip()
+        for d in map(readable, result["derivatives"])
         if d["excited"]
     ]
     if result["unexcited"]:
@@ -85,7 +85,9 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     return lines + [f"careful: {text}" for text in result["doubts"]] + losses(result["data_checks"])
 
 
-def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
+def sizes_in_words(numbers: dict[str, dict[str, Any]]) -> str:
+    """Numbers with their standard errors."""
     return ", ".join(
-        f"{name} {num(n['value'], 3)} +- {num(n['sd'], 1)} {n['unit']}" for name, n in numbers.items()
+        f"{name} {num(n['value'], 3)} +- {num(n['sd'], 1)} {n['unit']}".rstrip()
+        for name, n in ((name, readable(n)) for name, n in numbers.items())
     )

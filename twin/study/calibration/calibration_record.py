@@ -117,4 +117,11 @@ def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
 
 def _row(d: Derivative, name: str, ship: Ship, after: Ship) -> dict[str, Any]:
     before, value = (float(s.derivative(name)) for s in (ship, after))
-    return {"name": name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}
+    return {
+        "name": name,
+        "before": before,
+        "value": value,
+        "sd": d.sd,
+        "unit": d.unknown.unit,
+        "excited": d.excited,
+    }

@@ -176,7 +176,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         "error_floor": best.expected_error_m,
         "together_with": [n for n in best.hypothesis.effects if n != name],
         "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
-        "says": case.catalogue[name].sentence(),
+        "says": case.catalogue[name].sentence(case.model.ship),
     }
 
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from twin.num import as_given, num, percent
+from twin.num import as_given, num, percent, readable
 from twin.recording.checks import whose
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
@@ -17,12 +17,12 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     lines = [*whose(result["data_checks"]), result["sentence"], ""]
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
     for c in result["resembles"]:
-        lines += _candidate(c)
+        lines += candidate_lines(c)
     if result["verdict"] == "unknown" and result["candidates"]:
         lines.append("if it is one of the known effects:")
     for c in result["candidates"]:
-        lines += _candidate(c) + _not_named(c, result)
-    lines += _today(result["weather"])
+        lines += candidate_lines(c) + _not_named(c, result)
+    lines += weather_lines(result["weather"])
     chances = result["probabilities"]
     lines.append(
         f"nothing missing: {percent(chances['nothing_missing'])}   something unknown: "
@@ -65,14 +65,16 @@ def _healthy(result: dict[str, Any]) -> str:
     )
 
 
-def _today(weather: list[dict[str, Any]]) -> list[str]:
+def weather_lines(weather: list[dict[str, Any]]) -> list[str]:
     """Today's water and wind, in a part of their own."""
     if not weather:
         return []
     lines = ["", "today's water and wind:"]
     for w in weather:
         numbers = ", ".join(
-            f"{p['name']} {num(p['value'], 3)} {p['unit']}" for p in w["parameters"] if abs(p["value"]) > 0.0
+            f"{p['name']} {num(p['value'], 3)} {p['unit']}".rstrip()
+            for p in map(readable, w["parameters"])
+            if abs(p["value"]) > 0.0
         )
         pushed = (
             (f"; typically {say.force(w['typical_force'])}")
@@ -87,12 +89,13 @@ def _moment(m: dict[str, Any]) -> str:
     return f"{say.when(m)} a force pushed the ship that was not there before or after: {say.force(m)}"
 
 
-def _candidate(c: dict[str, Any]) -> list[str]:
+def candidate_lines(c: dict[str, Any]) -> list[str]:
+    """One cause: probability, sizes with intervals, typical force, and the error without and with it."""
     head = f"{percent(c['probability']):>6}  {c['effect']}"
     if c["together_with"]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
-    for p in c["parameters"]:
+    for p in map(readable, c["parameters"]):
         file = f"   (ship file: {as_given(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
         end = "   (at the end of its box)" if p["at_box_end"] else ""
         lines.append(

@@ -4,7 +4,7 @@ can show."""
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from twin.num import as_given, num
+from twin.num import as_given, num, readable
 from twin.study.fleet.over_months import of_a_lasting_fault
 
 HEADS = ("", "ship", "verdict", "since", "size (95 %)", "trend (95 %)", "of the error", "over the months")
@@ -61,16 +61,17 @@ def size(p: Mapping[str, Any] | None) -> str:
     """A number with its interval and unit."""
     if not p:
         return ""
-    unit = "" if p["unit"] == "-" else f" {p['unit']}"
+    p = readable(p)
+    unit = f" {p['unit']}".rstrip()
     end = ", at the end of its box" * bool(p["at_box_end"])
     return f"{p['name']} {num(p['value'])}{unit} ({num(p['low95'])} to {num(p['high95'])}{end})"
 
 
 def slope(cause: Mapping[str, Any]) -> str:
     """Where a size goes; the interval says whether it goes anywhere."""
-    t = cause["trend"]
-    if not t:
+    if not cause["trend"]:
         return "(three voyages make one)" * (len(cause["sizes"]) < 3)
+    t = readable(cause["trend"] | {"unit": cause["number"]["unit"]})
     slope, low, high = (num(t[key], sign=True) for key in ("slope", "low95", "high95"))
     return f"{slope} a {t['per']} ({low} to {high})"
 

@@ -12,6 +12,7 @@ from twin.physics.effect import Effect, SensorFault
 from twin.physics.effects import catalogue
 from twin.physics.ship import Ship
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
+from twin.study.instruments.instrument_lines import amount
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 from twin.study.reference.derivatives import noted
 
@@ -88,7 +89,7 @@ def as_map(found: Instruments) -> str:
     for e in _seen(found):
         if e not in said:
             lines.append(
-                f"# {e.unknown.name} = {as_given(e.value, 6)} {e.unknown.unit}: a map cannot take it off; a "
+                f"# {e.unknown.name} = {amount(e.value, e.unknown.unit)}: a map cannot take it off; a "
                 "ship file can (--ship ... -o SHIP.toml)"
             )
     if not said:

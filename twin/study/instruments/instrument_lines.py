@@ -4,11 +4,11 @@ import math
 import textwrap
 from typing import Any
 
-from twin.num import num
+from twin.num import READABLE, num
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, effect_of
 
-SHOWN = {"rad": ("deg", 180.0 / math.pi), "rad/s": ("deg/min", 180.0 / math.pi * 60.0), "-": ("%", 100.0)}
+SHOWN = READABLE | {"-": ("%", 100.0)}
 PLAIN = ("leeway",)  # no percentage
 READ = {
     "place": "m",

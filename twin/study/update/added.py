@@ -2,11 +2,11 @@
 remembers."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from twin.num import as_given, num
+from twin.num import as_given, num, readable
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -98,7 +98,11 @@ def notes(
     calm = [f"{n.effect}.{n.name}" for n in made.numbers if n.gained < UNTOUCHED]
     if calm:
         notes.append(f"The voyages say little about {', '.join(calm)}: kept near its prior.")
-    ends = [f"{n.effect}.{n.name} = {num(n.value, 3)} {n.unit}" for n in made.numbers if n.at_box_end]
+    ends = [
+        _size(f"{n.effect}.{n.name}", {"value": n.value, "unit": n.unit}, 3)
+        for n in made.numbers
+        if n.at_box_end
+    ]
     if ends:
         notes.append(
             f"careful: {', '.join(ends)} ended where its box ends: something else may be at work beside it "
@@ -193,7 +197,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         for r in result["proof"]["by_horizon"]
     ]
     out += [f"log likelihood ratio by horizon ({result['proof']['kind']}): {', '.join(at)}"]
-    out += ["", "what was fitted (95 %)", *_number_lines(result["parameters"])]
+    out += ["", "what was fitted (95 %)", *number_lines(result["parameters"])]
     if result["beside"]:
         out += ["water and weather of these voyages, not written", *_effect_lines(result["beside"])]
     out += ["", "by regime: before, after [m]"] + [
@@ -207,16 +211,22 @@ def _effect_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
     few = {effect: numbers for effect, numbers in parameters.items() if len(numbers) <= FEW}
     many = (effect for effect in parameters if effect not in few)
     sizes = {effect: sum(p["value"] ** 2 for p in parameters[effect].values()) ** 0.5 for effect in many}
-    return _number_lines(few) + [
+    return number_lines(few) + [
         f"  {effect}: {num(size, 2)} together, of {len(parameters[effect])} numbers"
         for effect, size in sizes.items()
     ]
 
 
-def _number_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
+def number_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
+    """Each number of each effect with its 95 % interval."""
     return [
-        f"  {effect}.{n} = {num(p['value'], 4)} {p['unit']}   {num(p['low95'], 3)} to "
-        f"{num(p['high95'], 3)}" + "   (the end of its box)" * p["at_box_end"]
+        f"  {_size(f'{effect}.{n}', p, 4)}   {num(p['low95'], 3)} to {num(p['high95'], 3)}"
+        + "   (the end of its box)" * p["at_box_end"]
         for effect, numbers in parameters.items()
-        for n, p in numbers.items()
+        for n, p in ((n, readable(p)) for n, p in numbers.items())
     ]
+
+
+def _size(name: str, number: Mapping[str, Any], digits: int) -> str:
+    told = readable(number)
+    return f"{name} = {num(told['value'], digits)} {told['unit']}".rstrip()
