@@ -6,6 +6,7 @@ import pytest
 
 from twin.live.gates.crosscheck import STREAM_S, Stream
 from twin.live.gates.current_rate import BLOCKS_APART, CurrentRate
+from twin.live.gates.cusum import ENOUGH
 from twin.live.signals.measured import Measured
 
 U_0, NOISE_MPS = 8.0, 0.02
@@ -47,7 +48,7 @@ def test_a_random_walk_is_told_from_noise_and_its_gain_is_that_of_the_local_leve
 
 def test_until_enough_is_known_the_current_has_no_gain_and_a_lie_teaches_little():
     rate = CurrentRate()
-    for k in range(BLOCKS_APART + 11):
+    for k in range(ENOUGH - 1):
         rate.feed(0.1 * k, 0.0, 0.14, False)
         assert rate.gain(0.14) == 0.0
     calm = CurrentRate()
@@ -63,6 +64,18 @@ def test_five_hours_in_eddies_are_no_fault_and_half_a_metre_a_second_of_the_log_
     stream, currents = Stream(U_0), list(eddies(seed, 1812))
     assert not alarms(stream, currents[:1800])
     assert alarms(stream, currents[1800:], 0.5)[0] <= 8
+
+
+def test_a_voyage_that_begins_in_strong_eddies_is_no_fault_and_a_log_that_is_off_then_is():
+    """Test: sixty times ten minutes that begin in eddies of 0.25 m/s, as in a rough sea; then, in eddies of 0.06 m/s,
+    a log that is 0.5 m/s off from the twelfth block on, the first that is judged. Expected: nothing is said; said
+    within 70 s."""
+    for seed in range(60):
+        assert not alarms(Stream(U_0), eddies(seed, 60, 0.25)), seed
+    for seed in range(5):
+        stream, currents = Stream(U_0), list(eddies(seed, 40, 0.06))
+        assert not alarms(stream, currents[:ENOUGH])
+        assert alarms(stream, currents[ENOUGH:], 0.5)[0] < 7
 
 
 def test_in_a_current_that_hardly_changes_a_small_shift_is_still_found():

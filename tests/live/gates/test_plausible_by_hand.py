@@ -1,7 +1,8 @@
 """Signs and units by pairs of signals, on made-up measurements: what is summed, when it is judged, what is said."""
 
+import random
 from dataclasses import replace
-from math import copysign, sqrt
+from math import copysign, exp, sqrt
 
 import pytest
 
@@ -44,7 +45,22 @@ def test_a_pair_is_three_slow_sums_and_their_factor():
     ),
 )  # fmt: skip
 def test_the_nearest_mistake_within_a_fifth_has_its_name(factor, mistakes, word):
-    assert plausible._word(factor, mistakes) == word
+    assert plausible._word(factor, (factor, factor), mistakes) == word
+
+
+@pytest.mark.parametrize("noise, said", ((0.0, "does not fit"), (0.3, "does not fit"), (2.0, "")))
+def test_a_factor_that_noise_of_the_compass_explains_is_no_mistake(noise, said):
+    """Test: a gyro that says a third (noise 0 and 0.3 of the turning) or, in 2.0, all of a turning that the compass sees
+    with that noise. Expected by hand: k between rho k and k/rho, times exp(5 sqrt((1 - rho^2) w/(2 - w))), w = 0.05."""
+    pair, dice = Pair(20.0, 0.1), random.Random(2)
+    for _ in range(400):
+        true = dice.gauss(0.0, 1.0)
+        pair.feed(true / (1.0 if noise > 1.0 else 3.0), true + dice.gauss(0.0, noise), 1.0)
+    rho, k = pair.correlation(), pair.factor()
+    by = exp(5.0 * sqrt(max(1.0 - rho * rho, 0.0) * 0.05 / 1.95)) / rho
+    assert pair.factors() == pytest.approx((k / by, k * by)) and k < 0.6
+    assert plausible._word(k, pair.factors(), TURNS) == said
+    assert plausible._word(-k, (-k * by, -k / by), TURNS) == "does not fit"
 
 
 class Sailed:

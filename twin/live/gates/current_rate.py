@@ -34,8 +34,8 @@ class CurrentRate:
         return max(self._far - self._near, 0.0) / (2.0 * (BLOCKS_APART - 1))
 
     def gain(self, scale: float) -> float:
-        """`scale`: the usual deviation of a block [m/s]; 0 until enough blocks are known."""
-        if self._count < ENOUGH:
+        """`scale`: the usual deviation of a block [m/s]; 0 until as many blocks are known as a test needs."""
+        if self._count < ENOUGH - BLOCKS_APART:
             return 0.0
         q, noise = self.variance, scale * scale
         prior = 0.5 * (q + sqrt(q * q + 4.0 * q * noise))

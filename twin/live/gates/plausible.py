@@ -4,11 +4,14 @@
     rudder
 
 Each pair is slow sums over a few ship lengths, k = sign(sum(a b)) sqrt(sum(a a)/sum(b b)); a factor near -1,
-57.3 or 1.94 has a name. Where the two do not go together (noise, waves) nothing is said here: crosscheck.py
-asks whether they agree."""
+57.3 or 1.94 has a name. One without a name is said only where no noise explains it: noise of b alone makes
+k too small, noise of a alone too large, so the true factor lies between rho k and k/rho, rho the correlation
+(Frisch, Statistical confluence analysis, 1934), give or take five deviations of log k, sqrt((1 - rho^2)/n)
+each, n the blocks remembered. Where the two do not go together (noise, waves) nothing is said here:
+crosscheck.py asks whether they agree."""
 
 from collections.abc import Sequence
-from math import copysign, sqrt
+from math import copysign, exp, sqrt
 
 from twin.live.gates.hole import is_hole
 from twin.live.signals.derive import turn
@@ -24,6 +27,8 @@ TURNS = (
 SPEEDS = ((1.943844, "is in knots"), (0.514444, "was converted from knots twice"))
 
 TOGETHER = 0.8  # correlation from which a factor means anything
+FITS = 0.6, 1.6  # a factor between them may be 1
+SURELY = 5.0  # deviations that noise reaches once in a million blocks: months at sea
 LEAST_S = 2.0  # the shortest time over which a turning is measured
 
 
@@ -33,10 +38,11 @@ class Pair:
     def __init__(self, time_s: float, enough: float):
         self.time_s, self.enough = time_s, enough  # `enough`: rms of b, times sqrt(time), that may be judged
         self.ab = self.bb = self.aa = self.heard_s = 0.0
+        self._w = 1.0  # of the last block
 
     def feed(self, a: float, b: float, dt: float) -> None:
         """One more moment of both signals, `dt` [s] after the last; what is older fades over `time_s`."""
-        w = min(dt / self.time_s, 0.5)
+        self._w = w = min(dt / self.time_s, 0.5)
         self.ab += w * (a * b - self.ab)
         self.bb += w * (b * b - self.bb)
         self.aa += w * (a * a - self.aa)
@@ -50,6 +56,12 @@ class Pair:
     def factor(self) -> float:
         """Noise in either moves it less than it would a regression of one on the other."""
         return copysign(sqrt(self.aa / self.bb), self.ab)
+
+    def factors(self) -> tuple[float, float]:
+        """The least and the greatest factor that noise in either may make this one of."""
+        rho, k = abs(self.correlation()), self.factor()
+        by = exp(SURELY * sqrt((1.0 - min(rho, 1.0) ** 2) * self._w / (2.0 - self._w))) / rho
+        return (k / by, k * by) if k > 0.0 else (k * by, k / by)
 
     def correlation(self) -> float:
         """Their correlation about zero, -1 to 1; 0 while neither moves."""
@@ -114,7 +126,7 @@ class Plausibility:
             if (
                 pair.judged
                 and abs(pair.correlation()) > TOGETHER
-                and (word := _word(pair.factor(), mistakes))
+                and (word := _word(pair.factor(), pair.factors(), mistakes))
             ):
                 said.append(f"{what}: it {word}")
         if self._helm.judged and self._helm.correlation() < -0.5:
@@ -125,7 +137,7 @@ class Plausibility:
         return said
 
 
-def _word(factor: float, mistakes: Sequence[tuple[float, str]]) -> str:
-    """The mistake whose factor is nearest; "" when it may be 1."""
+def _word(factor: float, factors: tuple[float, float], mistakes: Sequence[tuple[float, str]]) -> str:
+    """The mistake whose factor is nearest; "" when it, or what noise may make one of, may be 1."""
     off, word = min((abs(factor / value - 1.0), word) for value, word in mistakes)
-    return word if off < 0.2 else "" if 0.6 < factor < 1.6 else "does not fit"
+    return word if off < 0.2 else "" if factors[1] > FITS[0] and factors[0] < FITS[1] else "does not fit"
