@@ -49,7 +49,7 @@ def test_a_rudder_that_agrees_with_the_turning_by_chance_explains_none_of_it(see
 
 
 @pytest.mark.parametrize("seed", [7, 9, 22, 24])
-def test_a_boat_without_way_on_that_is_tossed_about_has_no_compass_that_jumps(seed):
+def test_a_boat_without_way_on_that_lies_in_the_waves_has_no_compass_that_jumps(seed):
     """Test: for a minute the boat lies in the waves, its velocity turns about at once and its heading by a few
     degrees a second."""
     rng = np.random.default_rng(seed)

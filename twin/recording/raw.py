@@ -41,7 +41,8 @@ class Raw:
 def through(
     path: Path, table: Table, clock: TimeAxis, by: Map, notes: list[str], facts: dict[str, Any]
 ) -> Raw:
-    """A table through a map: every channel in its unit, then places and velocities in their frames."""
+    """A table through a map: every channel in its unit, then places and velocities in their frames.
+    DataError: its latitudes are beyond 90 deg."""
     columns = {
         name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if there(table, c)
     }

@@ -22,7 +22,7 @@ LEAST_STEPS = 6
 ALIKE = 0.25  # spread of the steps between two headings, in the step
 NEAR_NORTH_DEG, FAR_DEG = 30.0, 40.0
 STAYS = 10  # samples
-OWN = 0.5  # share of a step that its witness may make; a boat without way on is tossed to any course
+OWN = 0.5  # share of a step that its witness may make; a boat without way on has any course
 JUMP_DEG = 8.0
 
 
