@@ -62,11 +62,14 @@ def test_the_first_row_that_is_contradicted_has_the_word():
     assert contradicted(NU, tests, 0.0) == ""
     tests[2]._until_s = 10.0
     assert (
-        contradicted(NU, tests, 9.0).startswith("r is measured farther")
+        contradicted(NU, tests, 9.0).startswith("rate of turn is measured farther")
         and contradicted(NU, tests, 10.0) == ""
     )
     tests[1]._share = 0.2
-    assert contradicted(NU, tests, 9.0) == "v is measured farther from the estimate than its bound allows"
+    assert (
+        contradicted(NU, tests, 9.0)
+        == "sway speed is measured farther from the estimate than its bound allows"
+    )
 
 
 TUBE = SimpleNamespace(oldest_s=0.625, noise=(0.1, 0.2, 0.01), way=(0.5, 0.4, 0.03), heading_noise=0.02)

@@ -119,7 +119,9 @@ def test_a_step_of_all_that_tells_of_speed_takes_the_promise_back_within_half_a_
         assert not (tick.certificate.inside and wrong(bridge))
         assert k < 5 or not tick.certificate.inside
         if k == 5:
-            assert bridge.loop.stabilizer.outside.startswith("u is measured farther from the estimate")
+            assert bridge.loop.stabilizer.outside.startswith(
+                "surge speed is measured farther from the estimate"
+            )
 
 
 def test_a_tick_of_a_slow_loop_is_no_hole_and_a_lost_second_of_a_fast_one_is():

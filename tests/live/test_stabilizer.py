@@ -145,7 +145,8 @@ def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_le
     assert len(out) >= 70 and not any(t.certificate.inside for t in ticks[30:])
     why = " ".join(out[0].reasons)
     assert (
-        "u is measured farther from the estimate than its bound allows" in why or "against the speed" in why
+        "surge speed is measured farther from the estimate than its bound allows" in why
+        or "against the speed" in why
     )
 
 

@@ -70,8 +70,8 @@ def test_a_bound_as_wide_as_the_set_is_no_bound_and_comes_back_by_what_is_known(
     assert one.run() == wide and one.why[-1] == "too wide"
 
 
-@pytest.mark.parametrize("axis", ("u", "v", "r"))
-def test_a_sample_that_contradicts_the_bound_takes_the_promise_away_for_a_minute(axis):
+@pytest.mark.parametrize("axis, said", [("u", "surge speed"), ("v", "sway speed"), ("r", "rate of turn")])
+def test_a_sample_that_contradicts_the_bound_takes_the_promise_away_for_a_minute(axis, said):
     """Test: two fresh samples far off. Expected: the word of that row in each tick for a minute, though the set was
     never left; afterwards the promise waits as after any other reason."""
     one = Watch()
@@ -80,7 +80,7 @@ def test_a_sample_that_contradicts_the_bound_takes_the_promise_away_for_a_minute
     one.run(fresh=(axis,))
     assert one.why[-1] is None and one.one._watched["uvr".index(axis)]._far == pytest.approx(LIMIT / 2.0)
     one.run(fresh=(axis,))
-    assert one.why[-1] == f"{axis} is measured farther from the estimate than its bound allows"
+    assert one.why[-1] == f"{said} is measured farther from the estimate than its bound allows"
     said_s, one.observer.innovation = one.now_s, {}
     while one.now_s < said_s + 60.0 - H:
         one.run()

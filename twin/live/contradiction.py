@@ -29,6 +29,8 @@ DEVIATIONS = 3.0  # of an instrument's noise, which the certificate takes for it
 BEYOND = 3.0  # deviations: as far beyond the bound as usual noise reaches
 LIMIT = log(1e8)  # as many samples as three instruments give in 1000 h at 10 Hz
 
+SPOKEN = {"u": "surge speed", "v": "sway speed", "r": "rate of turn"}  # rows of the estimate
+
 
 class Contradiction:
     """Of one row."""
@@ -64,8 +66,8 @@ class Contradiction:
 
 
 def contradicted(rows: Sequence[str], tests: Sequence[Contradiction], now_s: float) -> str:
-    """Which row is, in words; "" when none is."""
+    """Which row of the estimate is, in words; "" when none is."""
     for row, test in zip(rows, tests, strict=True):
         if test.at(now_s):
-            return f"{row} is measured farther from the estimate than its bound allows"
+            return f"{SPOKEN[row]} is measured farther from the estimate than its bound allows"
     return ""
