@@ -22,7 +22,8 @@ from twin.errors import DataError
 RIGHT = (
     "**Right**: every hidden cause of ship and instruments is named and no other; hidden weather is named or "
     "told; no cause is named on a healthy ship. **Its oracle gains**: the truth, fitted by the twin's own "
-    "form of it, brings the open-loop error down by a tenth."
+    "form of it, brings the open-loop error down by a tenth. Hidden weather is held against the best other "
+    "weather of the day (in answers of before 27 November 2026 against none, which is easier to gain on)."
 )
 BY_HAND = "## What it says"  # from this title on
 BINS = (0.05, 0.2, 0.5, 0.8, 0.9, 0.95, 1.0)
