@@ -57,7 +57,7 @@ class NoiseWatch:
         }
         self._restless: set[str] = set()
 
-    def feed(self, name: str, change: float, dt: float, seen_too: float = 0.0) -> None:
+    def feed(self, name: str, change: float, dt: float, seen_too: float | None = None) -> None:
         """The change of a channel since its sample before, which is dt seconds older; `seen_too`: what the
         channel of SEEN_TOO says at this sample."""
         if name not in self._of:
@@ -109,24 +109,38 @@ class Noise:
         """The usual variance over the present one, at most 1."""
         return min(self._floor() / self._own(), 1.0) if self.loud else 1.0
 
-    def feed(self, change: float, dt: float, seen_too: float = 0.0) -> None:
+    def feed(self, change: float, dt: float, seen_too: float | None = None) -> None:
         """The change since the sample before, which is dt seconds older, and the value beside it of what
         sees the same motion."""
         if change != 0.0:
             self._grain = min(self._grain, abs(change))
-        value, moved_before = self._beside
-        self._beside = seen_too, seen_too - value
         before, self._last = self._last, (change, dt)
         if before is None or not 0.2 < dt / before[1] < 5.0:  # a hole: no line goes across it
-            self._d = self._b = 0.0
+            self._d = 0.0
+            self._bend(seen_too, 1.0)
+            self._b = 0.0
             return
         share = before[1] / (before[1] + dt)
         d = before[0] - (before[0] + change) * share
-        b = moved_before - (moved_before + seen_too - value) * share
-        both, sea = -d * self._d, -0.5 * (d * self._b + b * self._d)
-        self._d, self._b = d, b
+        both = -d * self._d
+        if seen_too is not None:
+            b_before, b = self._b, self._bend(seen_too, share)
+            sea = -0.5 * (d * b_before + b * self._d)
+            most = SAMPLE_LIMIT * self._floor()
+            self._sea += (min(max(sea, -most), most) - self._sea) / min(self._count + 1, NOW)
+        self._d = d
         if both != 0.0:
-            self._judge(both, sea)
+            self._judge(both)
+
+    def _bend(self, seen_too: float | None, share: float) -> float:
+        """b of what sees the same motion, as d is made of the samples."""
+        if seen_too is None:
+            return 0.0
+        value, before = self._beside
+        change = seen_too - value
+        self._beside = seen_too, change
+        self._b = before - (before + change) * share
+        return self._b
 
     def _floor(self) -> float:
         least = max(self._least, self._grain)
@@ -136,17 +150,14 @@ class Noise:
         """The present variance less what the sea has to do with it."""
         return self._now - max(self._sea, 0.0)
 
-    def _judge(self, both: float, sea: float) -> None:
+    def _judge(self, both: float) -> None:
         self._count += 1
         known = self._count > ENOUGH
         most = SAMPLE_LIMIT * self._floor()
         seen = min(max(both, -most), most) if known else both
-        a = 1.0 / min(self._count, NOW)
-        self._now += a * (seen - self._now)
-        self._sea += a * (min(max(sea, -most), most) - self._sea)
+        self._now += (seen - self._now) / min(self._count, NOW)
         self.restless = known and self._now > QUIET * self._floor()
-        own = self._own() if self.restless else 0.0
-        noisy = own > QUIET * self._floor()
-        self.loud = noisy and (self.loud or own > LOUD * self._floor())
+        noisy = self.restless and self._own() > QUIET * self._floor()
+        self.loud = noisy and (self.loud or self._own() > LOUD * self._floor())
         pace = SLOWLY if noisy else 1.0
         self._usual += pace * (abs(seen) / WHITE - self._usual) / min(self._count, USUALLY)

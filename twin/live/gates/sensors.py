@@ -135,7 +135,7 @@ class Sensors:
         """A channel that is far noisier than it was weighs less; once all that arrived is taken, for some
         are held against others."""
         too = SEEN_TOO.get(name)
-        self._noise.feed(name, change, dt, (self.gates[too].value or 0.0) if too else 0.0)
+        self._noise.feed(name, change, dt, self.gates[too].value if too else None)
         weights, attribute = self._now.weights, self.gates[name].channel.attribute
         if name in self._noise.loud:
             weights[attribute] = self._noise.loud[name]
