@@ -72,3 +72,43 @@ def test_a_hole_in_the_record_is_no_noise():
         if k % 50 == 49:
             noise.feed(80.0, 20.0)
     assert not noise.loud
+
+
+@pytest.mark.parametrize("receiver", (0.02, 0.3))
+def test_a_motion_that_another_instrument_sees_too_is_no_noise_and_noise_beside_it_is(receiver):
+    """Test: a log's noise of 0.05 m/s; from 200 s on the ship moves to and fro between its samples by 0.25 m/s, and from
+    400 s on the log has a noise of 1.5 m/s besides. The receiver has its own noise. Expected: loud from then on only,
+    and within 25 s; without the receiver from the motion on."""
+    chance, alone, beside, heard_alone, heard_beside, last = (
+        random.Random(2),
+        Noise(0.5),
+        Noise(0.5),
+        [],
+        [],
+        None,
+    )
+    for k in range(1400):
+        t = 0.5 * k
+        motion = 0.25 * math.sin(2.6 * k) * (t >= 200.0)
+        value = motion + chance.gauss(0.0, 1.5 if t >= 400.0 else 0.05)
+        if last is not None:
+            alone.feed(value - last, 0.5)
+            beside.feed(value - last, 0.5, motion + chance.gauss(0.0, receiver))
+        last = value
+        heard_alone += [t] * alone.loud
+        heard_beside += [t] * beside.loud
+    assert heard_alone[0] < 210.0
+    assert 400.0 <= heard_beside[0] < 425.0 and len(heard_beside) > 60
+
+
+def test_the_part_of_the_sea_is_the_covariance_with_what_sees_it_too_and_is_never_added():
+    """By hand: changes 1, -1, 1, -1 at even steps make d = 1, -1, 1; those beside it half of that: b = 0.5, -0.5, 0.5.
+    Then -d d' = 1 and -(d b' + b d')/2 = 0.5 at each; the other way round -0.5, which takes nothing off."""
+    for sign, own in ((1.0, 0.5), (-1.0, 1.0)):
+        noise, beside = Noise(0.5), 0.0
+        for k in range(8):
+            change = (-1.0) ** k
+            beside += 0.5 * sign * change
+            noise.feed(change, 1.0, beside)
+        assert noise._now == pytest.approx(1.0) and noise._sea == pytest.approx(0.5 * sign)
+        assert noise._own() == pytest.approx(own)

@@ -8,6 +8,15 @@ the instrument's own, learned while the ship sails, noise and waves together:
 
     usual = mean |d_k d_{k-1}|/1.18             sigma^2 of white noise, more where the sea adds to it
 
+Speed through water and speed over ground see the same motion of the ship, each with its own noise. So what
+the sea has to do with the log's present roughness is the covariance with the receiver's b_k, made of its
+values at the log's samples as d_k is of the log's:
+
+    w = -mean (d_k b_{k-1} + b_k d_{k-1})/2     taken off sigma^2, never added
+
+The receiver's noise has no part in it, for it knows nothing of the log's; a ship that comes beam on to the
+sea moves both. A log without such a witness has its own past alone.
+
 A short wave on a slow instrument goes to and fro between samples on one heading and smoothly on the next:
 its signed mean may be near nought, or below, while it is as rough as ever. Waves too short for a slow
 instrument look like noise of all instruments: one that is loud is believed to be so only while the others
@@ -30,6 +39,10 @@ INSTRUMENTS = (  # what one instrument measures; the sea moves all of them at on
     ("heading_true_north_deg", "yaw_rate_degps", "roll_deg"),
     ("surge_velocity_through_water_mps", "sway_velocity_through_water_mps"),
 )
+SEEN_TOO = {  # what else sees the same motion, but for a current, which changes slowly
+    "surge_velocity_through_water_mps": "surge_velocity_mps",
+    "sway_velocity_through_water_mps": "sway_velocity_mps",
+}
 WITNESSES = ("roll_deg",)  # tells of the sea; its own noise matters to nothing
 
 
@@ -44,12 +57,13 @@ class NoiseWatch:
         }
         self._restless: set[str] = set()
 
-    def feed(self, name: str, change: float, dt: float) -> None:
-        """The change of a channel since its sample before, which is dt seconds older."""
+    def feed(self, name: str, change: float, dt: float, seen_too: float | None = None) -> None:
+        """The change of a channel since its sample before, which is dt seconds older; `seen_too`: what the
+        channel of SEEN_TOO says at this sample."""
         if name not in self._of:
             return
         noise, instrument = self._of[name]
-        noise.feed(change, dt)
+        noise.feed(change, dt, seen_too)
         (self._restless.add if noise.restless else self._restless.discard)(name)
         if noise.loud and name not in WITNESSES and not self._restless.difference(instrument):
             self.loud[name] = noise.weight
@@ -65,38 +79,76 @@ class NoiseWatch:
 class Noise:
     """Fed with each good sample of one channel; `weight` is what a sample is worth now, 1 unless loud."""
 
-    __slots__ = ("_count", "_d", "_grain", "_last", "_least", "_now", "_usual", "loud", "restless")
+    __slots__ = (
+        "_b",
+        "_beside",
+        "_count",
+        "_d",
+        "_grain",
+        "_last",
+        "_least",
+        "_now",
+        "_sea",
+        "_usual",
+        "loud",
+        "restless",
+    )
 
     def __init__(self, allowance: float):
         self.loud = self.restless = False  # far above its usual noise; somewhat
         self._least = LEAST_NOISE * allowance
         self._grain = allowance
         self._last: tuple[float, float] | None = None  # the last change, and over how long
-        self._d = 0.0
-        self._now = self._usual = 0.0
+        self._d = self._b = 0.0
+        self._beside = 0.0, 0.0  # what else sees the same motion: its value, and its last change
+        self._now = self._usual = self._sea = 0.0
         self._count = 0
 
     @property
     def weight(self) -> float:
         """The usual variance over the present one, at most 1."""
-        return min(self._floor() / self._now, 1.0) if self.loud else 1.0
+        return min(self._floor() / self._own(), 1.0) if self.loud else 1.0
 
-    def feed(self, change: float, dt: float) -> None:
-        """The change since the sample before, which is dt seconds older."""
+    def feed(self, change: float, dt: float, seen_too: float | None = None) -> None:
+        """The change since the sample before, which is dt seconds older, and the value beside it of what
+        sees the same motion."""
         if change != 0.0:
             self._grain = min(self._grain, abs(change))
         before, self._last = self._last, (change, dt)
         if before is None or not 0.2 < dt / before[1] < 5.0:  # a hole: no line goes across it
             self._d = 0.0
+            self._bend(seen_too, 1.0)
+            self._b = 0.0
             return
-        d = before[0] - (before[0] + change) * before[1] / (before[1] + dt)
-        both, self._d = -d * self._d, d
+        share = before[1] / (before[1] + dt)
+        d = before[0] - (before[0] + change) * share
+        both = -d * self._d
+        if seen_too is not None:
+            b_before, b = self._b, self._bend(seen_too, share)
+            sea = -0.5 * (d * b_before + b * self._d)
+            most = SAMPLE_LIMIT * self._floor()
+            self._sea += (min(max(sea, -most), most) - self._sea) / min(self._count + 1, NOW)
+        self._d = d
         if both != 0.0:
             self._judge(both)
+
+    def _bend(self, seen_too: float | None, share: float) -> float:
+        """b of what sees the same motion, as d is made of the samples."""
+        if seen_too is None:
+            return 0.0
+        value, before = self._beside
+        change = seen_too - value
+        self._beside = seen_too, change
+        self._b = before - (before + change) * share
+        return self._b
 
     def _floor(self) -> float:
         least = max(self._least, self._grain)
         return max(self._usual, least * least)
+
+    def _own(self) -> float:
+        """The present variance less what the sea has to do with it."""
+        return self._now - max(self._sea, 0.0)
 
     def _judge(self, both: float) -> None:
         self._count += 1
@@ -105,6 +157,7 @@ class Noise:
         seen = min(max(both, -most), most) if known else both
         self._now += (seen - self._now) / min(self._count, NOW)
         self.restless = known and self._now > QUIET * self._floor()
-        self.loud = self.restless and (self.loud or self._now > LOUD * self._floor())
-        pace = SLOWLY if self.restless else 1.0
+        noisy = self.restless and self._own() > QUIET * self._floor()
+        self.loud = noisy and (self.loud or self._own() > LOUD * self._floor())
+        pace = SLOWLY if noisy else 1.0
         self._usual += pace * (abs(seen) / WHITE - self._usual) / min(self._count, USUALLY)

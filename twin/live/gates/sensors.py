@@ -11,7 +11,7 @@ from math import degrees, inf, pi
 from twin.live.gates.actuator_rates import gates_of
 from twin.live.gates.frozen import Frozen
 from twin.live.gates.gate import Gate
-from twin.live.gates.noise import NoiseWatch
+from twin.live.gates.noise import SEEN_TOO, NoiseWatch
 from twin.live.gates.rivals import Rivals
 from twin.live.keelson.stamps import Stamps
 from twin.live.observer.estimate import HELD, Estimate
@@ -62,6 +62,7 @@ class Sensors:
         self.codes: dict[str, int] = {name: int(Quality.NEVER_SEEN) for name in self.gates}
         self._began_s: float | None = None
         self._waited_s = self._now_s = 0.0
+        self._changes: list[tuple[str, float, float]] = []  # of this tick's samples, and over how long
         self._live: dict[str, Gate] = {}  # channels whose value may be used
         self._odd: set[str] = set()  # channels that were not well when last looked at
         self._losing: set[str] = set()
@@ -87,6 +88,9 @@ class Sensors:
         steps: dict[str, float] = {}
         for result in arrived:
             self._take(result, fresh, steps)
+        for name, change, after_s in self._changes:
+            self._weigh(name, change, after_s)
+        self._changes.clear()
         for name in [name for name, gate in self._live.items() if now_s > gate.expires_s]:
             attribute = self._lose(name)
             fresh.pop(attribute, None)  # a sample may be too old when it comes
@@ -121,16 +125,18 @@ class Sensors:
             return
         self._put(name, gate)
         if before is not None:
-            self._weigh(name, gate, before, t - before_s)
+            self._changes.append((name, gate.difference(gate.value or 0.0, before), t - before_s))
         attribute = gate.channel.attribute
         fresh[attribute] = fresh.get(attribute, 0.0) + (t - before_s if before_s > 0.0 else 0.0)
         if gate.step:
             steps[attribute] = gate.step * gate.channel.to_si
 
-    def _weigh(self, name: str, gate: Gate, before: float, dt: float) -> None:
-        """A channel that is far noisier than it was weighs less."""
-        self._noise.feed(name, gate.difference(gate.value or 0.0, before), dt)
-        weights, attribute = self._now.weights, gate.channel.attribute
+    def _weigh(self, name: str, change: float, dt: float) -> None:
+        """A channel that is far noisier than it was weighs less; once all that arrived is taken, for some
+        are held against others."""
+        too = SEEN_TOO.get(name)
+        self._noise.feed(name, change, dt, self.gates[too].value if too else None)
+        weights, attribute = self._now.weights, self.gates[name].channel.attribute
         if name in self._noise.loud:
             weights[attribute] = self._noise.loud[name]
         elif attribute in weights:
