@@ -7,6 +7,7 @@ from bench.boats.actuator_questions import from_sheet
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study.diagnosis.manoeuvres import MANOEUVRES, HelmOrder, inputs, next_manoeuvre, reason, sail
+from twin.study.prediction.trial import shaft_speed
 
 OF_ANY_SHIP = [name for name, m in MANOEUVRES.items() if m.alone is None and m.side is None]
 
@@ -45,6 +46,13 @@ def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_wit
     beside = reason({"zigzag 10/10": 3.0, "turning circles": 1.0}, "zigzag 10/10")
     assert "runs away" in alone and "next best" not in alone
     assert "next best: turning circles" in beside
+
+
+def test_the_usual_power_of_a_ferry_whose_file_knows_the_wind_is_that_without_wind():
+    """Test: a wind's force is part of the model, and no wind is told. Expected: as without the wind."""
+    ferry = Model.of(from_sheet("ferry2"))
+    windy = ferry.but(find("Wind").plausible(ferry.ship))
+    assert 0.1 < shaft_speed(windy, 3.0) == shaft_speed(ferry, 3.0) < 1.0
 
 
 def told_at(model, name, lengths):

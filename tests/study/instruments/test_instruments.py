@@ -83,6 +83,37 @@ def test_a_healthy_ship_has_no_fault_and_its_stream_is_found(healthy):
     assert "No instrument disagrees" in terminal_lines(found)[0]
 
 
+def with_sternway(seconds=720.0, astern=(480.0, 600.0), slides=0.5):
+    """A boat of 2 m that zigzags at 1.5 m/s, and for a while goes astern at 1 m/s and slides to starboard, as
+    no formula of a turn has it; healthy instruments, twice a second."""
+    t = np.arange(0.0, seconds, 0.5)
+    rng, back = np.random.default_rng(4), np.clip(np.minimum(t - astern[0], astern[1] - t) / 5.0, 0.0, 1.0)
+    psi = np.radians(25.0) * np.sin(t / 4.0) * (1.0 - back) + 0.3 * np.sin(t / 90.0)
+    r = np.gradient(psi, t)
+    u = 1.5 - 2.5 * back
+    v = -0.4 * 2.0 * r + slides * np.maximum(-u, 0.0)
+    over = (u + 1j * v) * np.exp(1j * psi)
+    place = np.r_[0.0, np.cumsum((over[1:] + over[:-1]) / 4.0)]
+    noisy = lambda x, sd: x + sd * rng.normal(size=t.size)
+    return {
+        "time_s": t, "north_m": noisy(place.real, 0.05), "east_m": noisy(place.imag, 0.05),
+        HEADING: np.mod(noisy(np.degrees(psi), 0.1), 360.0), RATE: noisy(np.degrees(r), 0.1),
+        "surge_velocity_mps": noisy(u, 0.03), "sway_velocity_mps": noisy(v, 0.03),
+    }  # fmt: skip
+
+
+def test_a_boat_that_slides_as_it_goes_astern_has_no_fault_of_its_compass():
+    """Test: a minute or two of sternway in which the boat slides to starboard, with a healthy compass and
+    with one that is 3 deg off. Expected: nothing, and that: how a ship drifts in a turn is told of one that
+    has way ahead."""
+    columns = with_sternway()
+    found = estimate([voyage(columns, "course")], 2.0)
+    assert "heading_bias" not in found.faults and abs(found.of("A").value) < 3.0 * found.of("A").sd
+    found = estimate([voyage(compass(columns, lambda psi: 0.05), "course")], 2.0)
+    assert "heading_bias" in found.faults
+    near(found, "A", 0.05)
+
+
 @pytest.mark.parametrize(
     "fault, effect, name, truth, plant",
     [
@@ -99,6 +130,17 @@ def test_a_fault_is_found_with_its_size_and_by_its_name(healthy, fault, effect, 
     near(found, name, truth)
     said = next(f for f in as_json(found)["faults"] if f["fault"] == fault)
     assert said["effect"] == effect and said["residuals"]
+
+
+def test_no_age_is_told_by_the_drift_in_a_turn_alone(healthy):
+    """Test: heading and rate of turn two seconds late together, velocity turned by the compass, a log of one
+    axis. Expected: of the two neither, since only how the ship drifts would tell; of a heading that is late
+    beside a prompt rate of turn its age, and of a late log its own, from the position."""
+    both = late(late(healthy, HEADING, 2.0), RATE, 2.0)
+    found = estimate([voyage(both, "course")], 100.0)
+    assert not {"heading_delay", "rate_delay"} & set(found.faults)
+    assert "log" not in found.relative[1]
+    near(estimate([voyage(late(healthy, HEADING, 2.0), "course")], 100.0), "heading_delay", 2.0)
 
 
 def test_two_faults_are_told_apart(healthy):

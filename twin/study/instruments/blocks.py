@@ -8,7 +8,17 @@ from scipy.sparse import diags_array
 from twin.study.instruments.arrow import Block
 from twin.study.instruments.here import Theta, remembering
 from twin.study.instruments.problem import OUTLIER, Problem, Rows
-from twin.study.instruments.sense import drift, heading, log, log_aside, place, rate, velocity, wind
+from twin.study.instruments.sense import (
+    drift,
+    has_way_ahead,
+    heading,
+    log,
+    log_aside,
+    place,
+    rate,
+    velocity,
+    wind,
+)
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 
 AFFECT = {
@@ -43,18 +53,19 @@ def blocks(p: Problem, theta: Theta) -> list[Block]:
         for name, sense in SENSES.items():
             if name in p.by:
                 out.append(_block(p, theta, name, sense, p.by[name].y.T.ravel()))
-        out.append(_whitened(p, _block(p, theta, "drift", drift, np.zeros(p.grid.size))))
+        drifts = _block(p, theta, "drift", drift, np.zeros(p.grid.size))
+        out.append(_whitened(p, drifts, has_way_ahead(p, theta)))
     return out + _priors(p)
 
 
-def _whitened(p: Problem, b: Block) -> Block:
+def _whitened(p: Problem, b: Block, ahead: np.ndarray) -> Block:
     """What drift does beside its formula lasts: each row less `memory` times the one before it, at the same
-    scatter."""
-    p.beside = b.r
-    n, k = b.r.size, 1.0 / np.sqrt(1.0 - p.memory**2)
-    main = np.r_[1.0, np.full(n - 1, k)]
-    L = diags_array([main, np.full(n - 1, -k * p.memory)], offsets=[0, -1]).tocsr()
-    return Block(b.name, L @ b.r, (L @ b.J).tocsr(), L @ b.G, np.ones(n))
+    scatter. Only where the ship has way `ahead` (n,) does its formula hold; behind a gap it begins anew."""
+    p.beside = np.where(ahead, b.r, 0.0)
+    goes_on, k = ahead[1:] & ahead[:-1], 1.0 / np.sqrt(1.0 - p.memory**2)
+    main, before = np.r_[1.0, np.where(goes_on, k, 1.0)], np.where(goes_on, -k * p.memory, 0.0)
+    L = diags_array([main, before], offsets=[0, -1]).tocsr()
+    return Block(b.name, L @ b.r, (L @ b.J).tocsr(), L @ b.G, ahead.astype(float))
 
 
 def _block(

@@ -22,6 +22,7 @@ CLOCKS = {
     "rate_delay": ("rate",),
     "log_delay": ("log",),
 }
+OF_ATTITUDE = ("heading_delay", "rate_delay")  # ages of what says where the ship points and how it turns
 
 
 @dataclass(frozen=True)
@@ -180,6 +181,8 @@ def _relative(
     out = {}
     for name, age in AGES.items():
         if name not in problems[0].by or age == reference or (age not in aged.faults and age != book.clock):
+            continue
+        if name == "log" and not any(p.tied for p in problems):  # its age counts from the place
             continue
         row = np.zeros(len(book.names))
         row[book.names.index(age)] = 1.0

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from twin.recording.voyage import Voyage
-from twin.study.instruments.findings import CLOCKS, InstrumentEstimate, Instruments, said
+from twin.study.instruments.findings import CLOCKS, OF_ATTITUDE, InstrumentEstimate, Instruments, said
 from twin.study.instruments.instrument_samples import Readings, of_track, of_voyage
 from twin.study.instruments.kinematic_fit import KinematicFit, columns, fit
 from twin.study.instruments.problem import Problem
@@ -96,6 +96,8 @@ def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[Kinem
     names = [u.name for u in UNKNOWNS]
     first = fit(problems, [n for n in names if n != "heading_delay"], rounds=6)
     there = [n for n, by in CLOCKS.items() if any(b in p.by for b in by for p in problems)]
+    if not any(p.tied for p in problems):  # ages of heading and rate count from the prompter of the two
+        there = [n for n in there if n in OF_ATTITUDE]
     sd = dict(zip(WeighedSets(first, "heading_delay").names, first.sd().tolist(), strict=False))
     value = {n: float(first.theta[0, INDEX[n]]) for n in there}
     earliest = clock if clock in there else min(there, key=lambda n: value[n] + 2.0 * sd[n])

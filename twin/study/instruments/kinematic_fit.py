@@ -171,7 +171,8 @@ def _scatters(
             free = max(n - bent[name], 0.02 * n, 1.0)
             size = ((b.weight * r**2).sum() + more * usual**2) / (free + more)
             p.sd[name] = max(float(np.sqrt(size)), p.least[name])
-            p.lasts[name] = _lasting(r * b.weight, 1 + (name in PAIRS)) if name in p.by else 1.0
+            errs = name in p.by or name == "drift"
+            p.lasts[name] = _lasting(r * b.weight, 1 + (name in PAIRS)) if errs else 1.0
 
 
 def _lasting(r: np.ndarray, parts: int) -> float:

@@ -193,6 +193,12 @@ class Problem:
         return v.t, np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
 
     @property
+    def tied(self) -> bool:
+        """Whether velocity in the receiver's own axes, or a log of two, ties compass and gyro to the place.
+        Else only how the ship drifts in a turn would, and an age told by that is no instrument's business."""
+        return self.own or "log aside" in self.by
+
+    @property
     def places(self) -> int:
         """The number of shared numbers."""
         return len(UNKNOWNS)

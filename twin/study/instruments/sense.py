@@ -155,6 +155,12 @@ def drift(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     )
 
 
+def has_way_ahead(p: Problem, theta: Theta) -> np.ndarray:
+    """(N,) whether the ship goes ahead through the water, at the times of the grid. Where it does not, it
+    turns about another point than its drift's formula has: astern the pivot point lies abaft of midship."""
+    return np.asarray(_through_water(at(p, p.grid), theta)[0] > 0.0)
+
+
 def blown(p: Problem, here: Here) -> np.ndarray:
     """(N,) at the times of the grid: apparent wind speed times its part from abeam, toward starboard, over
     the ship's speed [m/s], beyond what it would be in still air: what a leeway of 1 would be."""

@@ -12,7 +12,7 @@ from typing import Any
 from twin.physics import core
 from twin.physics.actuators.helm import actuator_orders
 from twin.physics.model import Eta_nu, Model
-from twin.physics.state import Situation
+from twin.physics.state import WEATHER, Situation
 
 Steer = Callable[[Eta_nu], float]  # state -> ordered rudder [rad]
 
@@ -47,11 +47,12 @@ def controls(model: Model, delta: float, n: float) -> dict[str, Any]:
 
 
 def _power(model: Model, speed: float) -> float:
-    """The share of full power at which the ship neither gains nor loses way; all where that is too little."""
-    low, high = 0.0, 1.0
+    """The share of full power at which the ship neither gains nor loses way without wind and sea; all where
+    that is too little."""
+    calm, low, high = model.without_inputs(set(WEATHER))[0], 0.0, 1.0
     for _ in range(40):
         middle = 0.5 * (low + high)
-        gains = model.nu_dot(Situation(u=speed, **controls(model, 0.0, middle))).u > 0.0
+        gains = calm.nu_dot(Situation(u=speed, **controls(calm, 0.0, middle))).u > 0.0
         low, high = (low, middle) if gains else (middle, high)
     return 0.5 * (low + high)
 
