@@ -124,7 +124,9 @@ def test_a_loud_channel_is_believed_to_be_so_only_while_no_other_instrument_is_r
          "roll_deg", "surge_velocity_through_water_mps", "sway_velocity_through_water_mps"), 1.0))  # fmt: skip
 
     def fed(name, loud, restless):
-        stand_in = SimpleNamespace(loud=loud, restless=restless, weight=0.25, feed=lambda change, dt, too: None)
+        stand_in = SimpleNamespace(
+            loud=loud, restless=restless, weight=0.25, feed=lambda change, dt, too: None
+        )
         watch._of[name] = stand_in, watch._of[name][1]
         watch.feed(name, 0.0, 0.1)
 
