@@ -7,6 +7,7 @@ random ships stands in docs/results/judgement.md."""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
@@ -15,6 +16,7 @@ from twin.study.diagnosis.as_filed import model_with
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.consider import Considered
+from twin.study.diagnosis.criteria import CLEAR
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.refine import Found, Sets, refine
@@ -40,7 +42,7 @@ def with_further(
         if not new:
             break
         wider = _joined(first, again, new[: MAX_CAUSES - len(first.causes)])
-        if not _stands(wider.case, wider.found[wider.joined], wider.causes):
+        if not _stands(first, wider.found[wider.joined], wider.causes):
             break
         first = wider
     return first
@@ -106,10 +108,17 @@ def _fitted(first: SearchAnswer, chosen: Sets) -> Found:
     return refine(case, chosen, start.hypothesis.scenario, z, (), part=part)[0]
 
 
-def _stands(case: Case, own: Found, names: Sequence[str]) -> bool:
-    """Whether none of these ended at nothing beside the others."""
-    z = own.posterior.z
-    return all(z[[i for i, u in enumerate(case.effects) if u.owner == name]].any() for name in names)
+def _stands(first: SearchAnswer, own: Found, names: Sequence[str]) -> bool:
+    """Whether the voyages are clearly more probable with all of these, fitted together, than with those of
+    the first answer, and none ended at nothing beside the others: with a cause held as it was found, a second
+    may only be mending its number."""
+    case, z = first.case, own.posterior.z
+    causes = set(first.causes)
+    before = [f.hypothesis.log_weight for s, f in first.found.items() if set(case.causes(s)) == causes]
+    clear = own.hypothesis.log_weight - max(before, default=-inf) >= CLEAR
+    return clear and all(
+        z[[i for i, u in enumerate(case.effects) if u.owner == name]].any() for name in names
+    )
 
 
 def _decision(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> Decision:
