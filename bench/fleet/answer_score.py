@@ -98,7 +98,7 @@ def truths(row: Row) -> dict[str, float]:
         "GyroBias.bias": f.get("gyro"),
         "SpeedLogBias.bias": f.get("log_bias"),
         "SpeedLogScale.scale": f.get("log_scale"),
-        "SensorDelay.delay": f.get("late_s"),
+        "SensorDelay.delay": f["late_s"] + row.get("own_late_s", 0.0) if "late_s" in f else None,
         "RudderOffset.offset": f.get("rudder_offset"),
         "PropellerWear.loss": f.get("prop_wear"),
         "RudderWear.loss": f.get("rudder_wear"),

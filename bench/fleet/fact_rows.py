@@ -111,6 +111,8 @@ def _rows_of_voyage(ship: RandomShip, case: FleetCase, model: Model, facts: dict
         "instruments": {
             k: v for k, v in asdict(ship.kit).items() if k.startswith("has_") or k in ("coarse", "every_s")
         },
+        # how late the receiver is on every voyage of this ship [s]
+        "own_late_s": (ship.kit.gnss_late + ship.kit.speed_late) / 2,
         "ordered": ship.drive.ordered,
         "version": twin.__version__,
         **facts,

@@ -9,6 +9,7 @@ from twin.physics.effects import find
 from twin.study.diagnosis import further, sentences
 from twin.study.diagnosis.answer import answer
 from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.criteria import CLEAR
 from twin.study.diagnosis.search import MAX_CAUSES
 
 BIAS_RAD, EXTRA = 0.03, 0.3
@@ -103,10 +104,23 @@ def test_the_set_is_fitted_also_where_the_first_answer_stood_beside_other_water(
     assert size == pytest.approx(BIAS_RAD, rel=0.2)
 
 
-def test_a_cause_that_ends_at_nothing_beside_the_others_is_not_one(whole):
+def test_a_cause_that_ends_at_nothing_beside_the_others_is_not_one(half, whole):
     found = whole.found[whole.joined]
-    assert further._stands(whole.case, found, whole.causes)
+    assert further._stands(half, found, whole.causes)
     z = found.posterior.z.copy()
     z[[u.owner == "HullFouling" for u in whole.case.effects]] = 0.0
     gone = replace(found, posterior=replace(found.posterior, z=z))
-    assert not further._stands(whole.case, gone, whole.causes)
+    assert not further._stands(half, gone, whole.causes)
+
+
+@pytest.mark.parametrize("clearer, named", [(CLEAR + 0.1, True), (CLEAR - 0.1, False)])
+def test_a_further_cause_makes_the_voyages_clearly_more_probable_in_the_same_fit(half, whole, clearer, named):
+    """Test: the whole is more probable than the first answer alone by little more, or little less, than what
+    counts as clear (20 to 1)."""
+    found = whole.found[whole.joined]
+    alone = max(
+        f.hypothesis.log_weight for s, f in half.found.items() if half.case.causes(s) == ("HeadingBias",)
+    )
+    by = alone + clearer - found.hypothesis.log_weight
+    moved = replace(found.hypothesis, log_evidence=found.hypothesis.log_evidence + by)
+    assert further._stands(half, replace(found, hypothesis=moved), whole.causes) is named

@@ -14,7 +14,6 @@ from twin.recording.voyage import Voyage
 from twin.study.diagnosis.answer import Progress, SearchAnswer, answer
 from twin.study.diagnosis.as_filed import model_with
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.consider import Considered
 from twin.study.diagnosis.criteria import CLEAR
 from twin.study.diagnosis.decision import Decision
