@@ -108,15 +108,15 @@ def _fitted(first: SearchAnswer, chosen: Sets) -> Found:
 
 
 def _stands(first: SearchAnswer, own: Found, names: Sequence[str]) -> bool:
-    """Whether the voyages are clearly more probable with all of these, fitted together, than with those of
-    the first answer, and none ended at nothing beside the others: with a cause held as it was found, a second
-    may only be mending its number."""
-    case, z = first.case, own.posterior.z
-    causes = set(first.causes)
-    before = [f.hypothesis.log_weight for s, f in first.found.items() if set(case.causes(s)) == causes]
-    clear = own.hypothesis.log_weight - max(before, default=-inf) >= CLEAR
-    return clear and all(
-        z[[i for i, u in enumerate(case.effects) if u.owner == name]].any() for name in names
+    """Whether the voyages are clearly more probable with all of these, fitted together, than with any part of
+    the set that has the causes of the first answer alone, and none ended at nothing beside the others: with a
+    cause held as it was found, a second may only be mending its number."""
+    case, z, h = first.case, own.posterior.z, own.hypothesis
+    parts = (f.hypothesis for s, f in first.found.items() if set(s) < set(h.effects))
+    before = (part.log_weight for part in parts if set(case.causes(part.effects)) == set(first.causes))
+    own_numbers = ([i for i, u in enumerate(case.effects) if u.owner == name] for name in names)
+    return h.log_weight - max(before, default=-inf) >= CLEAR and all(
+        z[numbers].any() for numbers in own_numbers
     )
 
 
