@@ -41,16 +41,16 @@ FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a 
     "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
 OF_CAUSE = {  # of the explanation
-    "constant": -4.58,
+    "constant": -3.95,
     "log_odds": 0.29,
-    "clearness": 0.98,
-    "left_little": 0.36,
-    "named": 1.32,
-    "of_known_form": 1.69,
+    "clearness": 1.05,
+    "left_little": 0.35,
+    "named": 1.22,
+    "of_known_form": 0.97,
 }
-OF_CAUSE_BESIDE = {"constant": -1.33, "log_odds": 1.08}  # the explanation does without it
-OF_NOTHING = {"constant": -1.38, "log_odds": 0.97, "unnamed": 1.62}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -0.49, "log_odds": 0.67, "verdict": 0.69}  # what is there has no name
+OF_CAUSE_BESIDE = {"constant": -1.31, "log_odds": 1.12}  # the explanation does without it
+OF_NOTHING = {"constant": -1.07, "log_odds": 1.07, "unnamed": 1.23}  # no cause of ship and instruments
+OF_UNKNOWN = {"constant": -0.45, "log_odds": 0.69, "verdict": 0.85}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
