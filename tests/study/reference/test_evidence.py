@@ -14,6 +14,7 @@ from twin.study.reference.evidence import (
     given,
     log_evidence,
     posterior,
+    sized,
     weigh_sets,
     weigh_with,
 )
@@ -154,3 +155,22 @@ def test_many_sets_side_by_side_have_each_the_evidence_that_it_has_alone():
     np.testing.assert_allclose(together, alone, rtol=1e-12)
     edges = {stopped(*(x[i] for x in (mean, covariance, lo, hi)))[1].size for i in range(30)}
     assert len(edges) > 3 and np.ptp(together) > 1.0
+
+
+def test_a_size_far_beyond_what_is_usual_is_not_drawn_back_to_it():
+    """Test: twenty readings of scatter 3 of a number that is 6 prior widths. Expected: by the prior alone 6 / (1 +
+    9/20) = 4.14, and so three deviations short of the truth; with the width that it asks for within a tenth of 6,
+    and no surer than the readings are."""
+    one = (Unknown("A", "a", "-", 0.0, 1.0, -50.0, 50.0),)
+    far = Reduced(np.array([[20.0 / 9.0]]), np.array([6.0 * 20.0 / 9.0]), 0.0, one, np.zeros(1))
+    usual, asked = posterior(far, ("A",)), sized(far, ("A",))
+    assert usual.z[0] == pytest.approx(4.14, abs=0.01)
+    assert asked.z[0] == pytest.approx(6.0, rel=0.1)
+    assert usual.covariance[0, 0] < asked.covariance[0, 0] < 9.0 / 20.0
+
+
+def test_a_usual_size_stays_as_its_prior_has_it(reduced):
+    near = replace(reduced, b=0.2 * reduced.b)
+    usual, asked = posterior(near, ("A",)), sized(near, ("A",))
+    np.testing.assert_array_equal(asked.z, usual.z)
+    np.testing.assert_array_equal(asked.covariance, usual.covariance)

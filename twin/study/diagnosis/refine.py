@@ -22,6 +22,7 @@ from twin.study.reference.evidence import (
     boxed,
     log_evidence,
     posterior,
+    sized,
     weigh_with,
 )
 
@@ -74,12 +75,12 @@ def refine(
     whole, _ = case.along(lines)
     doubt = form_share(narrow, chosen, top)
     reduced = _everywhere(whole, chosen, whole.lines, at, doubt, top.near)
-    judged, own = _refined(case, chosen, reduced)
+    judged = _refined(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
     far = [h for scenario, h in top.judged.items() if scenario not in reduced]
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
     here = reduced[best.scenario]
-    return Found(best, boxed(here, chosen, own[best.scenario]), model, doubt, reduced=here), [
+    return Found(best, boxed(here, chosen, sized(here, chosen)), model, doubt, reduced=here), [
         *judged,
         *far,
         *others,
@@ -147,7 +148,7 @@ class BestPlace:
             lines,
             {
                 h.scenario: h
-                for h in _refined(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]
+                for h in _refined(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))
             },
         )
 
@@ -223,14 +224,11 @@ def _everywhere(
     return dict(zip(names, case.reduced(lines, case.scenarios(names, doubt), at), strict=True))
 
 
-def _refined(
-    case: Case, chosen: Sets, reduced: dict[str, Reduced]
-) -> tuple[list[Hypothesis], dict[str, Posterior]]:
-    own = {n: posterior(r, chosen) for n, r in reduced.items()}
+def _refined(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypothesis]:
     return [
-        Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n))
+        Hypothesis(chosen, n, log_evidence(r, chosen, posterior(r, chosen)), case.log_prior(chosen, n))
         for n, r in reduced.items()
-    ], own
+    ]
 
 
 def form_share(case: Case, chosen: Sets, top: BestPlace) -> float:
@@ -256,7 +254,7 @@ def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypo
     today."""
     daily = {u.owner for u in case.effects if u.label in case.nuisance.daily}
     left = [tuple(n for n in chosen if n != name) for name in chosen if name in daily]
-    return [h for rest in left for h in _refined(case, rest, reduced)[0]]
+    return [h for rest in left for h in _refined(case, rest, reduced)]
 
 
 def clipped(case: Case, z: np.ndarray) -> np.ndarray:

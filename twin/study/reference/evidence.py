@@ -23,6 +23,7 @@ from twin.study.estimation.innovations import Normal
 from twin.study.reference.inside_box import log_shares_inside
 from twin.study.reference.slabs import slabs_for
 
+WIDENED = 20  # steps in which a slab finds its width
 SPIKE = 0.01  # width of "not there", in widths of "there"
 
 
@@ -149,10 +150,11 @@ class Posterior:
     log_evidence: float  # without the boxes
 
 
-def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
-    """The effects' parameters when these effects are there and the others are not."""
+def posterior(reduced: Reduced, effects: Sequence[str], slab: np.ndarray | float = 1.0) -> Posterior:
+    """The effects' parameters when these effects are there and the others are not; `slab` (M,): how wide
+    their own parameters may be, in units of their priors."""
     width = np.broadcast_to(reduced.spike, len(reduced.unknowns)).astype(float)
-    width[reduced.rows(effects)] = 1.0
+    width[reduced.rows(effects)] = slab
     K = reduced.A * np.outer(width, width)
     K[np.diag_indices_from(K)] += 1.0
     L = np.linalg.cholesky(K)
@@ -167,6 +169,16 @@ def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
     return Posterior(
         reduced.at + width * (inverse @ pull), inverse * np.outer(width, width), reduced.base + gain
     )
+
+
+def sized(reduced: Reduced, effects: Sequence[str]) -> Posterior:
+    """The same with slabs as wide as the numbers ask, and no narrower than their priors (type II maximum
+    likelihood; MacKay 1992): a size far beyond what is usual is not drawn back to what is usual."""
+    rows, out = reduced.rows(effects), posterior(reduced, effects)
+    for _ in range(WIDENED):
+        asked = out.z[rows] ** 2 + np.diag(out.covariance)[rows]
+        out = posterior(reduced, effects, np.sqrt(np.maximum(asked, 1.0)))
+    return out
 
 
 def likeliest(
