@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.live.conftest import Sailing
 from twin.errors import DataError
 from twin.live.clock import Instant
 from twin.live.inbox import Inbox
@@ -18,6 +19,7 @@ from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
+from twin.physics.model import Model
 
 WALL = 1.7e9
 
@@ -42,11 +44,11 @@ def spoken(readings, bus):
             bus.put(key("twin", "ship", r.channel, "ship"), wrap(encode_float(r.value, ns), ns))
 
 
-@pytest.fixture
-def live_log(kvlcc2, sailing, tmp_path):
+@pytest.fixture(scope="module")
+def live_log(kvlcc2, tmp_path_factory):
     """A voyage of 60 s recorded live, with a stall, a lost sensor and garbage in it."""
-    path = tmp_path / "live.mcap"
-    bus = MemoryBus()
+    path, bus = tmp_path_factory.mktemp("live") / "live.mcap", MemoryBus()
+    sailing = Sailing(kvlcc2, Model.of(kvlcc2))
     with LogFile(path) as log:
         learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
         loop = Loop(kvlcc2, Inbox(bus, log.add), Outbox(Publisher(), "twin", "ship", bus, log.add), learned)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.live.conftest import Sailing
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.demonstration import ticks_of
@@ -28,6 +29,7 @@ from twin.live.signals.chart import TURN_RAD, Chart
 from twin.live.signals.config import Settings
 from twin.live.signals.geodesy import E2, A, datum
 from twin.live.signals.readings import Reading
+from twin.physics.model import Model
 
 FIX = key("twin", "ship", "location_fix", "ship")
 Alter = Callable[[list[Reading], Any], list[Reading]]
@@ -188,13 +190,13 @@ def test_I20_a_ship_that_sailed_far_while_its_computer_slept_is_found_again(make
     assert bridge.loop.sensors.rejected == 2 and ticks[-1].mode == bridge.ticks[550].mode
 
 
-@pytest.fixture
-def live_log(kvlcc2, sailing, certificate_file, tmp_path):
+@pytest.fixture(scope="module")
+def live_log(kvlcc2, certificate_file, tmp_path_factory):
     """Three minutes at 85 deg north across the antimeridian, recorded live by the service's loop as the bus brought
     them; with its settings, and how far from the ship each place was that it said."""
-    path, bus, earth, charts, now_s = tmp_path / "live.mcap", MemoryBus(), OnEarth(85.0, 179.98), [], 500.0
-    off_m = list[float]()
-    sailing.helm_deg, sailing.state = weaves, (0.0, 0.0, radians(90.0), *sailing.state[3:])
+    path, bus, earth = tmp_path_factory.mktemp("live") / "live.mcap", MemoryBus(), OnEarth(85.0, 179.98)
+    charts, now_s, off_m = [], 500.0, list[float]()
+    sailing = Sailing(kvlcc2, Model.of(kvlcc2), weaves, heading_deg=90.0)
     chosen = Settings({"observer.certificate": str(certificate_file)})
     with LogFile(path) as log:
         inbox = Inbox(bus, log.add)

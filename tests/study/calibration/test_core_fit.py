@@ -15,9 +15,11 @@ from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
+from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.usual import significantly_there
 from twin.study.estimation.innovations import NoiseModel
+from twin.study.reference.sailed import sailed
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +29,7 @@ def calibrated(voyages, tmp_path_factory):
     paths = {}
     for name in ("calm", "calm too", "nothing"):
         paths[name] = folder / f"{name.replace(' ', '-')}.mcap"
-        write_voyage(voyages[name], paths[name])
+        write_voyage(voyages[name].between(0.0, 800.0), paths[name])
     out, said, page = folder / "better.toml", folder / "said.json", folder / "page.html"
     words = ["calibrate", str(paths["calm"]), str(paths["calm too"]), "--held-out", str(paths["nothing"])]
     asked = ["--ship", "kvlcc2", "-o", str(out), "--json", str(said), "--report", str(page)]
@@ -146,7 +148,7 @@ def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_th
     paths = []
     for name in ("calm", "calm too", "nothing"):
         paths.append(str(tmp_path / f"{name.replace(' ', '-')}.mcap"))
-        write_voyage(antenna_elsewhere(voyages[name].between(0.0, 800.0), 64.0), paths[-1])
+        write_voyage(antenna_elsewhere(voyages[name].between(0.0, 500.0), 64.0), paths[-1])
     out, said = tmp_path / "better.toml", tmp_path / "said.json"
     words = [
         "calibrate",
@@ -183,38 +185,26 @@ def on_a_mast(v, height):
     ).into(v)
 
 
-def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship(tmp_path):
+def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship():
     """Test: three voyages of a container ship that heels by some degrees in its turns, seen by an antenna 30
     m above the axis of roll, and by a low one.
     Expected: its height and no place ahead, and predictions as good as with the low one (the heel of its
         turns had been taken for sway)."""
-    sailed = simulate(
+    recordings = simulate(
         [
             SeaCase("container", m, seed=970 + i, duration_s=900.0)
             for i, m in enumerate(("zigzag_20", "turning_circle", "mixed"))
         ]
     )
-    off, ships = [], []
+    ship, off, ships = load("container"), [], []
     for height in (0.0, 30.0):
-        paths = [tmp_path / f"{height:g}-{i}.mcap" for i in range(3)]
-        for path, r in zip(paths, sailed, strict=True):
-            write_voyage(on_a_mast(recorded(path.stem, r.columns, every=10), height), path)
-        out, said = tmp_path / f"{height:g}.toml", tmp_path / "said.json"
-        words = [
-            "calibrate",
-            *map(str, paths[:2]),
-            "--held-out",
-            str(paths[2]),
-            "--ship",
-            "container",
-            "-o",
-            str(out),
-            "--json",
-            str(said),
-        ]
-        assert cli.main(words) == 0
-        ships.append(load(out))
-        off.append(json.loads(said.read_text())["held_out"][-1]["position_m"])
+        *fitted, held = (
+            sailed(on_a_mast(recorded(str(i), r.columns, every=10), height), ship)
+            for i, r in enumerate(recordings)
+        )
+        found = fitted_core(fitted, [(held.track, 0)], ship)
+        ships.append(found.chosen.ship)
+        off.append(found.held_out[-1]["position_m"])
     (antenna,) = [e for e in ships[1].effects if type(e).__name__ == "AntennaOffset"]
     assert antenna.above == pytest.approx(30.0, rel=0.15) and abs(antenna.ahead) < 8.0
     assert off[1] < 1.3 * off[0]
@@ -231,15 +221,15 @@ def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_do
     """Test: three voyages of the 2 m boat in a wind that was recorded; the tanker's in a calm. Expected: how
     it pushes the boat, clearly, and that no calibration of it is taken for one of any other day's wind; of
     the tanker nothing."""
-    sailed = simulate(
+    recordings = simulate(
         [
             SeaCase("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=60.0)
             for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))
         ]
     )
     paths = [tmp_path / f"{i}.mcap" for i in range(3)]
-    for path, r in zip(paths, sailed, strict=True):
-        write_voyage(recorded(path.stem, r.columns, every=2), path)
+    for path, r in zip(paths, recordings, strict=True):
+        write_voyage(recorded(path.stem, r.columns, every=4), path)
     out, said = tmp_path / "better.toml", tmp_path / "said.json"
     words = [
         "calibrate",
