@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from twin.live.clock import ManualClock, MonotonicClock, ReplayClock
+from twin.live.clock import MonotonicClock, ReplayClock
 
 
 class Scenario:
@@ -113,12 +113,5 @@ def test_a_replay_gives_the_logs_instants_and_ends() -> None:
     assert clock.wait() is None and clock.slack_s() is None
 
 
-def test_a_hand_turned_clock_moves_both_times() -> None:
-    clock = ManualClock(5.0, 1.75e9)
-    clock.advance(2.0)
-    assert clock.wait()[:3] == (0, 7.0, 1.75e9 + 2.0)
-
-
-def test_instants_of_a_log_and_of_a_clock_turned_by_hand_are_never_late_and_skip_nothing():
-    for instant in (ReplayClock([(3.0, 4.0)]).wait(), ManualClock(3.0, 4.0).wait()):
-        assert instant == (0, 3.0, 4.0, 0.0, 0)
+def test_instants_of_a_log_are_never_late_and_skip_nothing():
+    assert ReplayClock([(3.0, 4.0)]).wait() == (0, 3.0, 4.0, 0.0, 0)

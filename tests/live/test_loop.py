@@ -118,7 +118,7 @@ def test_the_parts_can_be_timed(bridge):
         "record",
         "tick",
     }
-    assert len(parts.ns["tick"]) == 20 and parts.quantile_us("tick", 0.5) > 0.0
+    assert len(parts.ns["tick"]) == 20 and min(parts.ns["tick"]) > 0
 
 
 def test_a_tick_holds_its_time_and_its_pace(bridge):

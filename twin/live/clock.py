@@ -119,26 +119,3 @@ class ReplayClock:
         self._last_s = time_s
         began_s, first_s = self._began
         time.sleep(max(0.0, began_s + (time_s - first_s) / self._pace - now_s))
-
-
-class ManualClock:
-    """A clock a test turns by hand: `advance` moves it, `wait` gives a tick now."""
-
-    def __init__(self, time_s: float = 0.0, wall_s: float = 1.7e9):
-        self.time_s, self.wall_s = time_s, wall_s
-        self._index = 0
-
-    def advance(self, seconds: float) -> None:
-        """Move the time on by so many seconds."""
-        self.time_s += seconds
-        self.wall_s += seconds
-
-    def wait(self) -> Instant:
-        """A tick, now."""
-        instant = Instant(self._index, self.time_s, self.wall_s)
-        self._index += 1
-        return instant
-
-    def slack_s(self) -> None:
-        """None: there are no deadlines."""
-        return None

@@ -29,8 +29,3 @@ class Parts:
                     times.append(perf_counter_ns() - start)
 
         setattr(thing, method, timed)
-
-    def quantile_us(self, part: str, share: float) -> float:
-        """A quantile of one part's times [us]."""
-        times = sorted(self.ns[part])
-        return times[min(int(share * len(times)), len(times) - 1)] / 1e3 if times else 0.0

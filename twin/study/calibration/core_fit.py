@@ -95,7 +95,7 @@ def fitted_core(
     one of FITTED_BY; None: the one that predicts what was held out better."""
     first, sailed = ship, [s.track for s in fitted]
     progress("asking how the instruments go together, whatever the ship is")
-    own = own_instruments(fitted, ship, progress)
+    own = own_instruments(fitted, ship)
     ship = own.ship
     core, curve = _beside_its_compass(sailed, ship, progress)
     if core.antenna is not None:

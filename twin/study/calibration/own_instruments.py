@@ -6,7 +6,7 @@ and every later voyage would be told to have a fault that the ship always had. O
 judge, and the receiver's age, are written into the ship file; the other faults of instruments are fitted with
 the core (reference/nuisance.py), for which rudder and shaft tell of them too."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -42,9 +42,7 @@ class OwnInstruments:
     written: dict[str, dict[str, dict[str, Any]]]
 
 
-def own_instruments(
-    fitted: Sequence[Sailed], ship: Ship, progress: Callable[[str], None] = lambda text: None
-) -> OwnInstruments:
+def own_instruments(fitted: Sequence[Sailed], ship: Ship) -> OwnInstruments:
     """Ask the reference voyages; where they cannot be asked (no heading), the ship is as it was."""
     try:
         asked = on_references([_readings(s) for s in fitted], float(ship.L_pp))

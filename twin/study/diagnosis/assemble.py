@@ -26,8 +26,8 @@ from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.reference.nuisance import (
     TEMPER,
-    from_references,
     from_ship,
+    known_from,
     lasting,
     nuisance_unknowns,
     of_known_weather,
@@ -90,7 +90,7 @@ def of_tracks(
             path = structural_noise(_of_core(lines, usual), core_unknowns(model))
             noise_model = structural_noise_beside(lines, usual, path)
         temper = temper_of(innovate(lines, [noise_model])[0], usual)
-        known, _ = from_references(lines, usual, noise_model, temper)
+        known = known_from(lines, usual, noise_model, temper).nuisance()
     else:
         known = from_ship(model, nuisance)
     known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))

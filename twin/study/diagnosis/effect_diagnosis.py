@@ -63,40 +63,18 @@ def diagnose(
     told = with_further(
         answer(case, voyages, ship, references, progress), voyages, ship, references, progress
     )
-    case, weighed, found, w = told.case, told.weighed, told.found, told.weights
-    considered, decision, facts = told.considered, told.decision, told.considered.facts
-    nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing, facts, decision)
-    p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
-    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST_PROBABILITY][:SHOWN]
-    likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
-    progress("predicting held-out parts")
-    candidates = [_candidate(told, name, p[name]) for name in likely]
-    listed = [c for c in candidates if c]
-    if w.best.effects:
-        progress("estimating each part of the voyages by itself")
-        parts = over_time(case, found[w.best.effects], w.best.effects)
-        for c in listed:
-            if c["effect"] in parts:
-                c["over_time"] = parts[c["effect"]]
-    visible = {n: share for n, share in w.effects.items() if told.seen[n]}
-    base = found[considered.base]
+    case, found, considered = told.case, told.found, told.considered
+    listed, base = _listed(told, progress), told.found[considered.base]
     result = {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
-        "verdict": decision.verdict,
-        "reason": decision.reason,
-        "missing": list(decision.missing),
-        "further": list(told.further),
-        "more": decision.more,
-        "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
-        **_healthy(considered.healthy),
-        "probabilities": {"nothing_missing": nothing, "unknown": of_unknown(facts, decision)},
+        **_decided(told),
         "candidates": listed,
-        "rivals": rivals(weighed, found),
-        "resembles": [_candidate(told, n, w.unnamed[n]) for n in facts.resembles],
+        "rivals": rivals(told.weighed, found),
+        "resembles": [_candidate(told, n, told.weights.unnamed[n]) for n in considered.facts.resembles],
         "answer": {
-            "not_named": decision.not_named,
-            "lasting": [n for n in decision.missing if case.catalogue[n].lasts()],
+            "not_named": told.decision.not_named,
+            "lasting": [n for n in told.decision.missing if case.catalogue[n].lasts()],
         },
         "moments": [m.as_json(case.model) for m in considered.pushes],
         "path": {
@@ -104,39 +82,73 @@ def diagnose(
             "error_without": base.open_loop_error_m,
             "error_floor": base.expected_error_m,
         },
-        "next_manoeuvre": _next(
-            case,
-            found,
-            decision.verdict,
-            decision.missing,
-            listed,
-            {n: w.effects[n] for n in facts.one_of} if decision.reason == "one_of" else visible,
-            progress,
-        ),
-        "not_judged": _not_possible(case),
-        "weather": [
-            _weather(case, weighed, found, name, share) for name, share in w.weather.items() if share >= SOME
-        ],
-        "as_on_references": list(case.as_before),
-        "not_visible": [
-            n
-            for n, can in told.seen.items()
-            if not can and n not in [*decision.missing, *case.as_before, *case.present]
-        ],
-        "floor": {
-            "share_surge_sway_yaw": case.noise_model.share,
-            "sensor_factor": case.noise_model.sensor,
-            "temper": case.temper,
-        },
+        "next_manoeuvre": _next(told, listed, progress),
+        **_circumstances(told),
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
         "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],
         "data_checks": checks,
-        "facts": facts.as_json(),
+        "facts": considered.facts.as_json(),
     }
-    result["sentence"] = decision.sentence(result)
+    result["sentence"] = told.decision.sentence(result)
     return Diagnosed(plain(result), case, found)
+
+
+def _decided(told: SearchAnswer) -> dict[str, Any]:
+    """The verdict with its reason, what is named, and how probable the two answers without a name are."""
+    decision, facts, healthy = told.decision, told.considered.facts, told.considered.healthy
+    nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing, facts, decision)
+    return {
+        "verdict": decision.verdict,
+        "reason": decision.reason,
+        "missing": list(decision.missing),
+        "further": list(told.further),
+        "more": decision.more,
+        "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
+        **_healthy(healthy),
+        "probabilities": {"nothing_missing": nothing, "unknown": of_unknown(facts, decision)},
+    }
+
+
+def _listed(told: SearchAnswer, progress: Callable[[str], None]) -> list[dict[str, Any]]:
+    """The candidates of the answer: what is named first, then the most probable; with their strength in each
+    part of the voyages where the likeliest set holds them."""
+    w, missing = told.weights, told.decision.missing
+    p = w.effects | {name: w.weather[name] for name in missing if name in w.weather}
+    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST_PROBABILITY][:SHOWN]
+    progress("predicting held-out parts")
+    shown = [*missing, *(n for n in likely if n not in missing)]
+    listed = [c for c in (_candidate(told, name, p[name]) for name in shown) if c]
+    if w.best.effects:
+        progress("estimating each part of the voyages by itself")
+        parts = over_time(told.case, told.found[w.best.effects], w.best.effects)
+        for c in listed:
+            if c["effect"] in parts:
+                c["over_time"] = parts[c["effect"]]
+    return listed
+
+
+def _circumstances(told: SearchAnswer) -> dict[str, Any]:
+    """What could not be judged or seen, the water and wind of these voyages, and the noise they were judged
+    under."""
+    case, noise_model = told.case, told.case.noise_model
+    told_already = [*told.decision.missing, *case.as_before, *case.present]
+    return {
+        "not_judged": _not_possible(case),
+        "weather": [
+            _weather(case, told.weighed, told.found, name, share)
+            for name, share in told.weights.weather.items()
+            if share >= SOME
+        ],
+        "as_on_references": list(case.as_before),
+        "not_visible": [n for n, can in told.seen.items() if not can and n not in told_already],
+        "floor": {
+            "share_surge_sway_yaw": noise_model.share,
+            "sensor_factor": noise_model.sensor,
+            "temper": case.temper,
+        },
+    }
 
 
 def _healthy(found: Healthy | None) -> dict[str, Any]:
@@ -216,28 +228,25 @@ def _weather(
 
 
 def _next(
-    case: Case,
-    found: Mapping[tuple[str, ...], Found],
-    verdict: str,
-    missing: Sequence[str],
-    candidates: Sequence[dict[str, Any]],
-    likely: dict[str, float],
-    progress: Callable[[str], None],
+    told: SearchAnswer, listed: Sequence[dict[str, Any]], progress: Callable[[str], None]
 ) -> dict[str, Any] | None:
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
-    if verdict == "nothing_missing":
+    decision, case, found = told.decision, told.case, told.found
+    if decision.verdict == "nothing_missing":
         return None
     rivals = next(
         (
             (c["effect"], o)
-            for c in candidates
+            for c in listed
             for o in c["cannot_be_told_from"]
-            if c["effect"] in missing or verdict != "missing"
+            if c["effect"] in decision.missing or decision.verdict != "missing"
         ),
         None,
     )
-    if rivals is None and verdict == "undecided" and len(likely) > 1:
-        first, second, *_ = sorted(likely, key=lambda n: -likely[n])
+    effects, one_of = told.weights.effects, told.considered.facts.one_of
+    asked = one_of if decision.reason == "one_of" else [n for n in effects if told.seen[n]]
+    if rivals is None and decision.verdict == "undecided" and len(asked) > 1:
+        first, second, *_ = sorted(asked, key=lambda n: -effects[n])
         rivals = (first, second)
     if rivals is None:
         return None

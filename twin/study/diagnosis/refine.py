@@ -74,7 +74,7 @@ def refine(
     model, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
     doubt = form_share(narrow, chosen, top)
-    reduced = _everywhere(whole, chosen, whole.lines, at, doubt, top.near)
+    reduced = _in_each(whole, whole.lines, at, doubt, top.near)
     judged = _refined(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
     far = [h for scenario, h in top.judged.items() if scenario not in reduced]
@@ -146,10 +146,7 @@ class BestPlace:
         return cls(
             at,
             lines,
-            {
-                h.scenario: h
-                for h in _refined(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))
-            },
+            {h.scenario: h for h in _refined(case, chosen, _in_each(case, lines, at, DOUBTS[0], names))},
         )
 
     @property
@@ -217,10 +214,10 @@ def reduced_at(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarra
         return None
 
 
-def _everywhere(
-    case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]
+def _in_each(
+    case: Case, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]
 ) -> dict[str, Reduced]:
-    """In each of these scenarios."""
+    """What these lines say of the effects in each of these noise scenarios."""
     return dict(zip(names, case.reduced(lines, case.scenarios(names, doubt), at), strict=True))
 
 

@@ -225,14 +225,11 @@ def _present(model: Model, unknown: Unknown) -> float:
     return unknown.centre
 
 
-def evidence(normal: Normal, sd: np.ndarray, offset: np.ndarray | None = None) -> float:
-    """Log probability of the innovations with the unknowns integrated out over N(offset, sd^2). Both (P,),
-    in the unknowns' own units."""
+def evidence(normal: Normal, sd: np.ndarray) -> float:
+    """Log probability of the innovations with the unknowns integrated out over N(0, sd^2). `sd` (P,): in the
+    unknowns' own units."""
     A, b, ee = normal.total()
     A, b = A * np.outer(sd, sd), b * sd
-    if offset is not None:
-        z = offset / sd
-        ee, b = ee - 2.0 * float(b @ z) + float(z @ A @ z), b - A @ z
     L = np.linalg.cholesky(A + np.eye(sd.size))
     half = np.linalg.solve(L, b)
     return -0.5 * (ee - float(half @ half) + float(normal.logdet.sum())) - float(np.log(np.diag(L)).sum())

@@ -68,15 +68,12 @@ def error_share(
     return shares[0], shares[1]
 
 
-def slipstream(
-    K_T0: float, K_T1: float, epsilon: float, kappa: float, eta: float, J: np.ndarray = WORKING_J
-) -> tuple[float, float]:
+def slipstream(K_T0: float, K_T1: float, epsilon: float, kappa: float, eta: float) -> tuple[float, float]:
     """epsilon and kappa for which eps^2 (J^2 + kappa 8 K_T/pi) is nearest to the MMG inflow at the rudder
-    [YY15 eq. (26)].
+    [YY15 eq. (26)], at the advance ratios J of WORKING_J.
 
-    `eta`: propeller diameter over rudder height, the part of the rudder that the slipstream covers. `J`
-    (N,): the advance ratios at which it is to be, dimensionless."""
-    J = J[0.95 * K_T0 + K_T1 * J > 0.0]
+    `eta`: propeller diameter over rudder height, the part of the rudder that the slipstream covers."""
+    J = WORKING_J[0.95 * K_T0 + K_T1 * WORKING_J > 0.0]
     loading = 8.0 / np.pi * (K_T0 + K_T1 * J)
     jet = np.sqrt(J**2 + loading)
     q = epsilon**2 * (eta * (J + kappa * (jet - J)) ** 2 + (1.0 - eta) * J**2)

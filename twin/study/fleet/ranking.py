@@ -12,9 +12,7 @@ SCHEMA_VERSION = 1
 ORDER = ("missing", "weather", "unknown", "undecided", "nothing_missing", "not_asked")  # most wrong first
 
 
-def ranked(
-    fleet: Sequence[tuple[FleetShip, Sequence[Sequence[Row]]]], level: float = LEVEL
-) -> dict[str, Any]:
+def ranked(fleet: Sequence[tuple[FleetShip, Sequence[Sequence[Row]]]]) -> dict[str, Any]:
     """The JSON of `twin fleet`, of ships with the rows of each of their voyages.
 
     Ships on which a cause of ship or instruments is named stand first, by the share of the error that goes
@@ -24,7 +22,7 @@ def ranked(
     ships = [_ship(ship, asked) for ship, asked in fleet]
     known = {s["ship"]: s.pop("_evidence") for s in ships}
     tested = {name: e for name, e in known.items() if e.voyages and e.references}
-    found = alarms(tested, level)
+    found = alarms(tested)
     for s in ships:
         s["over_months"] = _over_months(known[s["ship"]], s["ship"] in found)
     ships.sort(key=lambda s: (ORDER.index(s["state"]), -_share(s), s["ship"]))
@@ -38,7 +36,7 @@ def ranked(
             "references": sum(v["verdict"] == "reference" for s in ships for v in s["voyages"]),
             "failed": sum(bool(v["failed"]) for s in ships for v in s["voyages"]),
         },
-        "over_months": {"level": level, "ships": len(tested), "needed": len(tested) / level, "alarms": found},
+        "over_months": {"level": LEVEL, "ships": len(tested), "needed": len(tested) / LEVEL, "alarms": found},
     }
 
 

@@ -48,7 +48,7 @@ def estimate(
         chosen = best.faults
         progress("fitting " + (", ".join(chosen) or "no fault"))
         found = fit(
-            problems, [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)], _start(found, book, best)
+            problems, [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)], _start(found, best)
         )
     return said(readings, problems, found, clock)
 
@@ -106,7 +106,7 @@ def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[Kinem
     return fit(problems, [n for n in names if n != earliest], theta), earliest
 
 
-def _start(found: KinematicFit, book: WeighedSets, best: Weighed) -> np.ndarray:
+def _start(found: KinematicFit, best: Weighed) -> np.ndarray:
     """(V, P) where the set of faults is expected to stand."""
     row = np.zeros(found.at.size)
     row[best.at] = best.mean

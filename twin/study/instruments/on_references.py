@@ -15,7 +15,7 @@ import numpy as np
 from twin.study.estimation.rarity import deviations
 from twin.study.instruments.by_voyage import equations, tellable
 from twin.study.instruments.findings import Instruments
-from twin.study.instruments.instrument_estimate import Progress, estimate
+from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS
 from twin.study.reference.between import scattered, ship_of
@@ -100,11 +100,9 @@ class OnReferences:
     found: Instruments
 
 
-def on_references(
-    readings: Sequence[Readings], length_m: float, progress: Progress = lambda text: None
-) -> OnReferences:
+def on_references(readings: Sequence[Readings], length_m: float) -> OnReferences:
     """Of reference voyages; DataError where one of them lacks heading, or position and velocity."""
-    found = estimate(readings, length_m, progress)
+    found = estimate(readings, length_m)
     told = [f for f in found.log_bayes_factors if f not in (*ALWAYS, found.clock)]
     numbers: dict[str, KinematicUsual] = {}
     clear: dict[str, float] = {}

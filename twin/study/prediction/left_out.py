@@ -134,11 +134,9 @@ def _ends(windows: Windows, horizon_s: float, run: int = MODEL) -> np.ndarray:
     return vectors(windows, run)[k][windows.valid[k]]
 
 
-def _second_moment(
-    windows: Sequence[Windows], horizon_s: float, effective: float, run: int = MODEL
-) -> np.ndarray:
+def _second_moment(windows: Sequence[Windows], horizon_s: float, effective: float) -> np.ndarray:
     """(8, 8) mean of e e' with the simulated noise among it; NaN for what was not read."""
-    error, noise = (np.concatenate([_ends(w, horizon_s, r) for w in windows]) for r in (run, STRUCTURE))
+    error, noise = (np.concatenate([_ends(w, horizon_s, r) for w in windows]) for r in (MODEL, STRUCTURE))
     read = np.isfinite(error).any(0)
     own, simulated = (np.nan_to_num(x).T @ np.nan_to_num(x) / max(len(x), 1) for x in (error, noise))
     S = (PRIOR * simulated + effective * own) / (PRIOR + effective)

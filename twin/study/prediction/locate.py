@@ -27,9 +27,7 @@ RATIO = 1.15  # an error less than this above elsewhere is not worth a sentence
 MAX_CONDITIONS = 8
 
 
-def sizes(
-    windows: Sequence[Windows], horizon_s: float, run: int = MODEL, like: np.ndarray | None = None
-) -> np.ndarray:
+def sizes(windows: Sequence[Windows], horizon_s: float, run: int = MODEL) -> np.ndarray:
     """(W,) one error for each window: position and heading, each over its mean of the model's errors. It
     is dimensionless."""
     errors, model = pooled(windows, horizon_s, run), pooled(windows, horizon_s)

@@ -132,9 +132,7 @@ def coarse_each(
     return [Windows(track, start, lead, each[None, :, i], valid, measured) for i in range(count)]
 
 
-def ends(
-    track: Track, model: Model, horizons_s: Sequence[float], stride_s: float = STRIDE_S
-) -> list[Windows]:
+def ends(track: Track, model: Model, horizons_s: Sequence[float]) -> list[Windows]:
     """Run the model alone to each of these horizons: of each the windows that `predict` begins for it, looked
     at there only, without noise. All windows are run once, to the longest that lies within the track;
     what would end beyond it is valid nowhere."""
@@ -142,7 +140,7 @@ def ends(
     placed = np.isfinite(measured[:, :3]).all(1)
     state, wind_to = true_motion(steadied(track), model)
     lead = [np.unique(_leads(track, [h], 1)) for h in horizons_s]
-    starts = [_starts(track, placed, round(h / track.h), stride_s) for h in horizons_s]
+    starts = [_starts(track, placed, round(h / track.h), STRIDE_S) for h in horizons_s]
     begun, every = np.unique(np.concatenate(starts)), np.unique(np.concatenate(lead))
     run = np.zeros((every.size, begun.size, len(READINGS)))
     there = every[every < len(track) - begun.min()]

@@ -77,11 +77,9 @@ def sail(
     return log
 
 
-def turning_circle(
-    model: Model, delta: float, speed: float | None = None, rate: float | None = None
-) -> Circle:
-    """Hard over from straight ahead; delta [rad], positive to starboard."""
-    U, L = speed or model.ship.U_0, model.ship.L_pp
+def turning_circle(model: Model, delta: float, rate: float | None = None) -> Circle:
+    """Hard over from straight ahead at U_0; delta [rad], positive to starboard."""
+    U, L = model.ship.U_0, model.ship.L_pp
     log = sail(model, lambda _: delta, shaft_speed(model, U), 14.0 * L / U, U, rate)
     side = 1.0 if delta > 0 else -1.0
     quarter = _at_heading(log, 0.5 * pi, side)
@@ -90,17 +88,10 @@ def turning_circle(
     return Circle(quarter[0] / L, side * quarter[1] / L, side * half[1] / L, hypot(end[3], end[4]) / U)
 
 
-def zigzag(
-    model: Model,
-    delta: float,
-    psi: float,
-    speed: float | None = None,
-    rate: float | None = None,
-    lengths: float = 30.0,
-) -> list[float]:
-    """Overshoot angles [deg], first to last, of a zigzag that puts the rudder to delta [rad] whenever the
-    heading passes psi [rad]."""
-    U, L = speed or model.ship.U_0, model.ship.L_pp
+def zigzag(model: Model, delta: float, psi: float, rate: float | None = None) -> list[float]:
+    """Overshoot angles [deg], first to last, of a zigzag of 30 lengths from U_0 that puts the rudder to
+    delta [rad] whenever the heading passes psi [rad]."""
+    U, L = model.ship.U_0, model.ship.L_pp
     helm = {"side": 1.0 if delta > 0 else -1.0}
 
     def steer(state: Eta_nu) -> float:
@@ -108,7 +99,7 @@ def zigzag(
             helm["side"] = -helm["side"]
         return helm["side"] * abs(delta)
 
-    log = sail(model, steer, shaft_speed(model, U), lengths * L / U, U, rate)
+    log = sail(model, steer, shaft_speed(model, U), 30.0 * L / U, U, rate)
     headings = [state[2] for _, state in log]
     turns = [
         b

@@ -81,23 +81,6 @@ def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Un
     )
 
 
-def from_references(
-    lines: Sequence[Linear],
-    unknowns: tuple[Unknown, ...],
-    noise_model: NoiseModel,
-    temper: float,
-    prior: np.ndarray | None = None,
-) -> tuple[Nuisance, dict[str, float]]:
-    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order),
-    as they concern the next voyage; and by what share of their priors' widths numbers differ from one voyage
-    to another.
-
-    `prior` (C,): prior means where they are not the unknowns' centres.
-    """
-    known = known_from(lines, unknowns, noise_model, temper, prior)
-    return known.nuisance(), known.between
-
-
 @dataclass(frozen=True)
 class Known:
     """What each reference voyage tells of these unknowns, in prior widths, and by how much (`scatter` (C,):
@@ -142,7 +125,8 @@ def known_from(
     temper: float,
     prior: np.ndarray | None = None,
 ) -> Known:
-    """The same, voyage by voyage. `prior` (P,): their means, in the unknowns' own units."""
+    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order).
+    `prior` (P,): prior means where they are not the unknowns' centres, in their own units."""
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [noise_model])[0], sd, temper)

@@ -69,10 +69,11 @@ def with_or_without_gear(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], known: Catalogue, temper: float
 ) -> Fit:
     """The core's fit (and these other unknowns') with rudder or actuators as they were recorded or, if that
-    makes the voyages clearly more probable, with a gear before them. The gear is looked for beside the core
-    as it is at first and, if it is not found there, as it was fitted without
-    one: a core that was fitted to an order has taken on a part of the gear, and the more so the slower that
-        is."""
+    makes the voyages clearly more probable, with a gear before them.
+
+    The gear is looked for beside the core as it is at first and, if it is not found there, as it was fitted
+    without one: a core that was fitted to an order has taken on a part of the gear, and the more so the
+    slower that is."""
 
     def fitted(about: Model) -> Fit:
         every = (*unknowns, *gear_unknowns(about))
