@@ -12,8 +12,21 @@ from twin.study.track.jumps import jumps_in_words
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal: the error first; before it, that a voyage may be of another ship."""
-    error = f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"
-    lines = [*whose(result["data_checks"]), error]
+    lines = [*whose(result["data_checks"]), *_errors(result), *_parts(result)]
+    lines += [f"  {text}" for text in (*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"]))]
+    share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
+    lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
+    lines += [
+        f"baseline of this ship: {sizes_in_words({i['name']: i})} (allowed for by twin diagnose)"
+        for i in result["usual"]
+    ]
+    lines += _derivatives(result)
+    return lines + [f"careful: {text}" for text in result["doubts"]] + losses(result["data_checks"])
+
+
+def _errors(result: dict[str, Any]) -> list[str]:
+    """The open-loop error by horizon and regime, before and after, and what was fitted to."""
+    lines = [f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"]
     for e in result["held_out"]:
         if e["position_m"] is not None:
             lines.append(
@@ -27,62 +40,64 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         "windows)"
         for r in result["by_regime"]
     ]
-    lines.append(
-        "  fitted to "
-        + ("where it went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
-    )
-    lines += [
+    by = "where it went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading"
+    return [*lines, f"  fitted to {by}"]
+
+
+def _parts(result: dict[str, Any]) -> list[str]:
+    """What became a part of the ship's model, each with its numbers; and weather that was too weak."""
+    lines = [
         "  the instruments show it on each reference voyage alike, whatever the ship is: now part of the "
         f"model ({name}: {sizes_in_words(numbers)})"
         for name, numbers in result["instruments"].items()
     ]
-    if gear := result["gear"]:
-        lines.append(
-            "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "
-            f"({PARTS['gear'].__name__}: {sizes_in_words(gear)})"
-        )
+    lines += _part(
+        result,
+        "gear",
+        "rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model",
+    )
     lines += [
         f"  {name.partition('.')[2]} lags behind what was recorded of it, its order: that is now part of the "
         f"model ({name}: {sizes_in_words(numbers)})"
         for name, numbers in result["actuator_lags"].items()
     ]
-    if antenna := result["antenna"]:
-        lines.append(
-            "  position is measured elsewhere than the ship file says: the place is now part of the model "
-            f"({PARTS['antenna'].__name__}: {sizes_in_words(antenna)})"
-        )
-    if wind := result["wind"]:
-        lines.append(
-            "  wind pushed the ship on these voyages: its force is now part of the model "
-            f"({PARTS['wind'].__name__}: {sizes_in_words(wind)})"
-        )
-    if compass := result["compass"]:
-        lines.append(
-            "  speed over ground is turned by a compass that deviates with the heading: that is now part of "
-            f"the model ({PARTS['compass'].__name__}: {sizes_in_words(compass)})"
-        )
-    lines += [
+    for part, why in (
+        (
+            "antenna",
+            "position is measured elsewhere than the ship file says: the place is now part of the model",
+        ),
+        ("wind", "wind pushed the ship on these voyages: its force is now part of the model"),
+        (
+            "compass",
+            "speed over ground is turned by a compass that deviates with the heading: that is now part of "
+            "the model",
+        ),
+    ):
+        lines += _part(result, part, why)
+    return lines + [
         f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "
         "is allowed for and not called missing"
         for name in result["too_faint"]
     ]
-    lines += [f"  {text}" for text in (*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"]))]
-    share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
-    lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
-    lines += [
-        f"baseline of this ship: {sizes_in_words({i['name']: i})} (allowed for by twin diagnose)"
-        for i in result["usual"]
-    ]
-    lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
+
+
+def _part(result: dict[str, Any], part: str, why: str) -> list[str]:
+    """The line of one of PARTS, where it was found."""
+    found = result[part]
+    return [f"  {why} ({PARTS[part].__name__}: {sizes_in_words(found)})"] if found else []
+
+
+def _derivatives(result: dict[str, Any]) -> list[str]:
+    """The table of the derivatives that were fitted, and which were not."""
+    lines = ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
     lines += [
         f"{d['name']:<10}{num(d['before'], 4):>11}{num(d['value'], 4):>11}{num(d['sd'], 2):>9}"
         + f" {d['unit']}".rstrip()
         for d in map(readable, result["derivatives"])
         if d["excited"]
     ]
-    if result["unexcited"]:
-        lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
-    return lines + [f"careful: {text}" for text in result["doubts"]] + losses(result["data_checks"])
+    kept = result["unexcited"]
+    return lines + [f"not excited by these voyages, prior kept: {', '.join(kept)}"] * bool(kept)
 
 
 def sizes_in_words(numbers: dict[str, dict[str, Any]]) -> str:

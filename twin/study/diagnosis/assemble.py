@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from twin.study.estimation.columns import (
 )
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
+from twin.study.reference.evidence import Nuisance
 from twin.study.reference.nuisance import (
     TEMPER,
     from_ship,
@@ -79,45 +81,73 @@ def of_tracks(
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
-    path = noise_model_of(ship) or NoiseModel()
-    noise_model, temper = noise_model_of(ship, "beside") or path, _temper(ship)
-    if references:
-        progress("reading the reference voyages")
-        usual = usual_unknowns(model, catalogue)
-        lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
-        if noise_model_of(ship) is None:
-            progress("estimating the noise model")
-            path = structural_noise(_of_core(lines, usual), core_unknowns(model))
-            noise_model = structural_noise_beside(lines, usual, path)
-        temper = temper_of(innovate(lines, [noise_model])[0], usual)
-        known = known_from(lines, usual, noise_model, temper).nuisance()
-    else:
-        known = from_ship(model, nuisance)
-    known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))
+    before = (
+        _of_references(references, model, catalogue, progress)
+        if references
+        else _of_calibration(model, nuisance)
+    )
+    known = replace(
+        before.known.beside(rough), daily=dict(before.known.daily) | of_known_weather(model, catalogue)
+    )
     progress("linearising the ship and its instruments along the tracks")
     case = Case(
-        tracks,
-        model,
-        judged,
-        candidates,
-        unknowns,
-        effects,
-        known,
-        noise_model,
-        path,
-        temper,
-        {
+        tracks=tracks,
+        model=model,
+        catalogue=judged,
+        candidates=candidates,
+        unknowns=unknowns,
+        effects=effects,
+        nuisance=known,
+        noise_model=before.noise_model,
+        path=before.path,
+        temper=before.temper,
+        odds={
             n: ODDS_WEATHER if e.is_weather() else ODDS_UNNAMED if n in unnamed else ODDS
             for n, e in judged.items()
         },
-        read_lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
-        any(manoeuvred(t, ship) for t in tracks),
-        noise_model.white,
-        noise_model.sensor,
-        as_before,
-        tuple(unnamed),
+        lines=read_lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
+        excited=any(manoeuvred(t, ship) for t in tracks),
+        white=before.noise_model.white,
+        scatter=before.noise_model.sensor,
+        as_before=as_before,
+        unnamed=tuple(unnamed),
     )
     return settle(case)
+
+
+class KnownBefore(NamedTuple):
+    """What was known of the ship before these voyages: the nuisance, and the noise models and temper as
+    `Case` has them."""
+
+    known: Nuisance
+    noise_model: NoiseModel
+    path: NoiseModel
+    temper: float
+
+
+def _of_calibration(model: Model, nuisance: tuple[Unknown, ...]) -> KnownBefore:
+    """As the ship file has it."""
+    path = noise_model_of(model.ship) or NoiseModel()
+    beside = noise_model_of(model.ship, "beside") or path
+    return KnownBefore(from_ship(model, nuisance), beside, path, _temper(model.ship))
+
+
+def _of_references(
+    references: Sequence[Voyage], model: Model, catalogue: dict[str, type[Effect]], progress: Progress
+) -> KnownBefore:
+    """As these reference voyages tell it; under the ship file's noise models, if it has them."""
+    ship = model.ship
+    path = noise_model_of(ship) or NoiseModel()
+    noise_model = noise_model_of(ship, "beside") or path
+    progress("reading the reference voyages")
+    usual = usual_unknowns(model, catalogue)
+    lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
+    if noise_model_of(ship) is None:
+        progress("estimating the noise model")
+        path = structural_noise(_of_core(lines, usual), core_unknowns(model))
+        noise_model = structural_noise_beside(lines, usual, path)
+    temper = temper_of(innovate(lines, [noise_model])[0], usual)
+    return KnownBefore(known_from(lines, usual, noise_model, temper).nuisance(), noise_model, path, temper)
 
 
 def _felt_before(
