@@ -6,22 +6,22 @@ import sys
 
 import pytest
 
+from bench.tick.memory import memory
 from twin.live import realtime
 
 
 def test_memory_is_read_from_the_kernel():
-    found = realtime.memory_mb()
-    assert found["peak"] >= found["rss"] > 1.0 and found["anonymous"] + found["file"] <= found["rss"] + 1.0
+    found = memory()
+    assert found.peak_mb >= found.now_mb > 1.0 and found.anon_mb + found.file_mb <= found.now_mb + 1.0
 
 
 def test_dropped_pages_come_back_by_themselves():
     """Test: drop all clean library pages, then use them. Expected: the process gets smaller and works on."""
     code = (
-        "from twin.live import realtime\nfrom twin.live.keelson import decode\nfrom twin.live.learning import residual\n"
+        "from bench.tick.memory import memory\nfrom twin.live import realtime\nfrom twin.live.keelson import decode\nfrom twin.live.learning import residual\n"
         "from twin.physics.ship import load\n"
         "r = residual.load(residual.bundled(load('kvlcc2')), load('kvlcc2'))\n"
-        "before = realtime.memory_mb()['rss']; dropped = realtime.drop_pages(); after = "
-        "realtime.memory_mb()['rss']\n"
+        "before = memory().now_mb; dropped = realtime.drop_pages(); after = memory().now_mb\n"
         "assert r.network.run([0.0] * 5) == r.network.run([0.0] * 5)\n"
         "print(before, after, dropped)\n"
     )

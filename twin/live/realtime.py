@@ -147,18 +147,3 @@ def _lock() -> list[str]:
 
 def _libc() -> ctypes.CDLL | None:
     return ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
-
-
-def memory_mb() -> dict[str, float]:
-    """Resident memory of this process [MB]: now, its peak, its anonymous and its file-backed part."""
-    names = {"VmRSS": "rss", "VmHWM": "peak", "RssAnon": "anonymous", "RssFile": "file"}
-    found = {}
-    try:
-        with open("/proc/self/status", encoding="ascii") as status:
-            for line in status:
-                key, _, rest = line.partition(":")
-                if key in names:
-                    found[names[key]] = int(rest.split()[0]) / 1024.0
-    except OSError:
-        pass
-    return found

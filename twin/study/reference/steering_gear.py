@@ -75,9 +75,9 @@ def with_or_without_gear(
     without one: a core that was fitted to an order has taken on a part of the gear, and the more so the
     slower that is."""
 
-    def fitted(about: Model) -> Fit:
-        every = (*unknowns, *gear_unknowns(about))
-        return fit(tracks, about, every, known, NoiseModel(), temper=temper, smooth=True)
+    def fitted(first: Model) -> Fit:
+        every = (*unknowns, *gear_unknowns(first))
+        return fit(tracks, first, every, known, NoiseModel(), temper=temper, smooth=True)
 
     found = fitted(model)
     if not model.ship.actuators and model.lags:
