@@ -24,15 +24,9 @@ GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 @pytest.fixture(scope="module")
 def ordered(tmp_path_factory, at_sea):
     """Two voyages of the tanker that hold the rudder's order behind a gear slower than usual, and one behind
-    a gear that is slower still; what was hidden in each; and the ship calibrated on the first two, measured
-    on a third."""
+    a gear that is slower still; what was hidden in each; and the ship calibrated on the first two."""
     folder, paths, hidden = tmp_path_factory.mktemp("gear"), {}, {}
-    for name, sailed in (
-        ("zigzag", "slow gear zigzag"),
-        ("mixed", "slow gear"),
-        ("course", "slow gear course"),
-        ("slower", "slower gear"),
-    ):
+    for name, sailed in (("zigzag", "slow gear zigzag"), ("mixed", "slow gear"), ("slower", "slower gear")):
         voyage, truth = at_sea[sailed]
         paths[name], hidden[name] = folder / f"{name}.mcap", truth["SteeringLag"]
         write_voyage(voyage, paths[name])
@@ -43,8 +37,6 @@ def ordered(tmp_path_factory, at_sea):
         "calibrate",
         str(paths["zigzag"]),
         str(paths["mixed"]),
-        "--held-out",
-        str(paths["course"]),
         "--ship",
         str(start),
         "-o",
