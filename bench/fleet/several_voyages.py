@@ -15,7 +15,7 @@ from bench.fleet.answer_score import alarm, causes, gains, right, share
 from bench.fleet.fact_rows import KEPT_FACTS, voyage
 from bench.fleet.hidden_causes import OF_THE_VOYAGE
 from bench.fleet.kept_ships import Job, answers, ask_again, opened
-from bench.fleet.voyage_plan import sailed, sailed_again
+from bench.fleet.voyage_plan import SHARES, sailed, sailed_again
 from twin.errors import TwinError
 from twin.study.diagnosis.effect_diagnosis import diagnose
 
@@ -26,11 +26,17 @@ MORE = (1, 2)  # voyages beside the first
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, nargs="+", help="of `run`: its rows and its calibrated ships")
     parser.add_argument("--workers", type=int, default=1, help="processes (default: %(default)s)")
+    parser.add_argument(
+        "--kinds", nargs="+", default=list(SHARES), choices=list(SHARES), help="cases asked (default: all)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """A row a case; then the table of all that are there, beside the answers of the first voyage alone."""
-    rows = {r["key"]: r for r in ask_again(args.folder, TOGETHER, _lasts, _asked, args.workers)}
+    asked = ask_again(
+        args.folder, TOGETHER, lambda r: r["kind"] in args.kinds and _lasts(r), _asked, args.workers
+    )
+    rows = {r["key"]: r for r in asked}
     alone = {r["key"]: r for folder in args.folder for r in answers(folder) if r["key"] in rows}
     print("\n".join(table(alone, rows)))
     return 0
