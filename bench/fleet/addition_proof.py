@@ -8,9 +8,9 @@ model on the same two voyages with nothing hidden. A row a voyage is added to FO
 a run that was ended goes on."""
 
 import argparse
+import json
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,9 @@ import numpy as np
 import twin
 from bench.fleet.answer_score import causes, share, wrong_names
 from bench.fleet.fact_rows import voyage
-from bench.fleet.kept_ships import Job, ask_again, opened
+from bench.fleet.keep_answers import RESULTS
+from bench.fleet.kept_rows import digits
+from bench.fleet.kept_ships import Job, add_arguments, ask_again, opened
 from bench.fleet.voyage_plan import sailed as as_asked
 from bench.fleet.voyage_plan import sailed_again
 from twin.errors import TwinError
@@ -27,21 +29,29 @@ from twin.physics.ship import Ship
 from twin.study.reference.sailed import sailed
 from twin.study.update.adding import ahead, lasting
 
+__all__ = ["add_arguments", "run"]
+
 ADDITIONS = "additions.jsonl"
+KEPT_ADDITIONS = RESULTS / "fleet_additions.jsonl"
 HELD_OUT = 2  # voyages
 PAYS = 0.8  # error of the healthy ship over that before, below which a right name should be accepted
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, nargs="+", help="of `run`: its rows and its calibrated ships")
-    parser.add_argument("--workers", type=int, default=1, help="processes (default: %(default)s)")
 
 
 def run(args: argparse.Namespace) -> int:
     """A row a voyage whose answer named a lasting cause; then the table of all that are there."""
     rows = [*ask_again(args.folder, ADDITIONS, _names_a_cause, _of_voyage, args.workers)]
     print("\n".join(table(rows)))
+    if args.keep:
+        KEPT_ADDITIONS.write_text("".join(json.dumps(_kept(r)) + "\n" for r in rows))
     return 0
+
+
+def _kept(row: Mapping[str, Any]) -> dict[str, Any]:
+    """The row without the numbers of the fit, rounded."""
+    short = {k: v for k, v in row.items() if k not in ("numbers", "beside", "cpu_s", "by_thirds")}
+    thirds = {k: row["by_thirds"][k] for k in ("accepted", "log_ratio", "failed") if k in row["by_thirds"]}
+    kept: dict[str, Any] = digits(short | {"by_thirds": thirds}, 4)
+    return kept
 
 
 def _names_a_cause(row: Mapping[str, Any]) -> bool:

@@ -4,13 +4,34 @@ latest answer to each; and the batches as they were answered when no fit had see
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from bench.fleet import answer_score, decision_fit, probability_fit
+from bench.fleet import (
+    addition_proof,
+    answer_score,
+    decision_fit,
+    kept_ships,
+    probability_fit,
+    several_voyages,
+)
+from bench.fleet.addition_proof import KEPT_ADDITIONS
 from bench.fleet.answer_score import Row, share
 from bench.fleet.decided_again import decided
 from bench.fleet.fleet_page import FIGURES, SHORT, cost, figures, head, in_detail, in_short, lines
 from bench.fleet.kept_rows import of_batch, together
+from bench.fleet.several_voyages import KEPT_TOGETHER
 from bench.fleet.voyage_plan import practice
 
+ADDED = (
+    "`twin add` of the lasting causes that were named on {voyages} voyages of {ships} ships, fitted to that "
+    "voyage and proved on two more with the same fault, on other days and courses; and proved by thirds of "
+    "the voyage itself (`--cross-validated`). Errors: open-loop position error at the longest horizon on the "
+    "two voyages, median (10 to 90 %); healthy: of the same ship file on the same days and courses with "
+    "nothing wrong. Made by `python -m bench.fleet add FOLDER --keep`."
+)
+ASKED_TOGETHER = (
+    "{cases} of these voyages asked alone, and together with one and two more of the same ship, on other "
+    "days and courses, with the same fault. Made by `python -m bench.fleet together FOLDER --kinds single "
+    "pair nothing --keep`; cases in the order of the ships until the time was over."
+)
 STRICTER = (5.0, 6.0, 7.0, 8.0)  # SIGNIFICANT, from the one that stands
 
 
@@ -20,7 +41,8 @@ def judgement(rows: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
     read = decision_fit.with_facts(every)
     fitted = decision_fit.fitted_lines(decision_fit.held_out(read, fit))
     told = probability_fit.page_lines(probability_fit.fitted(probability_fit.examples(read)))
-    tables = [*_batches(rows, every), *in_detail(every), *_practices([decided(r) for r in every])]
+    tables = [*_batches(rows, every), *_further(), *in_detail(every)]
+    tables += _practices([decided(r) for r in every])
     return "\n".join([*head(every), *tables, *fitted, *_moved(read), *told, *cost(every)]) + "\n"
 
 
@@ -45,6 +67,16 @@ def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
     columns = ("first", "second", "third")
     titles = [f"{n} batch ({len(b)})" for n, b in zip(columns, batches, strict=False)]
     return lines("Figures", text, ("", "goal", *titles, f"all ({len(every)})"), body)
+
+
+def _further() -> list[str]:
+    """What the owner does after an answer."""
+    added, together = (kept_ships.kept(path) for path in (KEPT_ADDITIONS, KEPT_TOGETHER))
+    ships = len({row["key"].rpartition("-")[0] for row in added})
+    out = ["", "## What was named, added", "", ADDED.format(voyages=len(added), ships=ships), ""]
+    out += addition_proof.table(added)
+    out += ["", "## Voyages asked together", "", ASKED_TOGETHER.format(cases=len(together)), ""]
+    return out + several_voyages.table(together)
 
 
 def _practices(rows: Sequence[Row]) -> list[str]:

@@ -1,5 +1,6 @@
 """What `run` left in its folders: the calibrated ships, and the answers of each."""
 
+import argparse
 import json
 import pickle
 from collections.abc import Callable, Iterator, Sequence
@@ -34,12 +35,24 @@ def answers(folder: Path) -> list[dict[str, Any]]:
     return [row for row in rows.values() if "missing" in row]
 
 
+def kept(path: Path) -> list[dict[str, Any]]:
+    """Rows that `--keep` put into docs/results."""
+    return list(read(path))
+
+
 def opened(job: Job) -> tuple[RandomShip, FleetCase, Ship]:
     """The random ship of an answer, what was hidden, and the ship as its owner has calibrated it."""
     folder, row = job
     family, seed, number = row["family"], row["seed"], int(row["key"].rpartition("-")[2])
     model, _ = pickle.loads((Path(folder) / "ships" / f"{family}-{seed}.pickle").read_bytes())
     return build(family, seed), FleetCase(family, seed, number, row["kind"], row["hidden"]), model
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Of a verb that asks more about the answers of `run`."""
+    parser.add_argument("folder", type=Path, nargs="+", help="of `run`: its rows and its calibrated ships")
+    parser.add_argument("--workers", type=int, default=1, help="processes (default: %(default)s)")
+    parser.add_argument("--keep", action="store_true", help="put the rows into docs/results, for the page")
 
 
 def ask_again(

@@ -54,11 +54,13 @@ def test_only_right_names_that_could_pay_count_as_owed():
 
 
 def test_answers_about_more_voyages_stand_beside_those_about_one():
-    truth = {"key": "a", "kind": "single", "hidden": {"GyroBias": 1.0}}
-    truth["oracle"] = {"without_m": 10.0, "with_m": 2.0}
     blind = {"missing": [], "verdict": "nothing_missing"}
     named = {"missing": ["GyroBias"], "verdict": "missing"}
-    rows = {"a": {"key": "a", "2": blind, "3": named}, "b": {"key": "b", "2": {"failed": "gap"}, "3": named}}
-    said = table_together({k: truth | blind for k in rows}, rows)
-    assert said[2].startswith("| single, gains | 0 of 1") and said[2].count("1 of 1") == 1
+    row = {"key": "a", "kind": "single", "hidden": {"GyroBias": 1.0}, "gains": True}
+    rows = [
+        row | {"1": blind, "2": blind, "3": named},
+        row | {"1": blind, "2": {"failed": "gap"}, "3": named},
+    ]
+    said = table_together(rows)
+    assert said[2].startswith("| single cause, gains | 0 of 1") and said[2].count("1 of 1") == 1
     assert said[-1] == "Could not be asked: 1 of 2."
