@@ -1,14 +1,16 @@
-"""`python -m bench.fleet VERB`: run, table, fit, keep, peer, prior, variation, proofs."""
+"""`python -m bench.fleet VERB`: run, table, fit, keep, add, together, peer, prior, variation, proofs."""
 
 import argparse
 import sys
 
 from bench.fleet import (
+    addition_proof,
     decision_fit,
     false_proofs,
     fleet_page,
     keep_answers,
     prior_fit,
+    several_voyages,
     sparse_peer,
     variation_fit,
 )
@@ -26,6 +28,8 @@ def main() -> int:
         "table": fleet_page,
         "fit": decision_fit,
         "keep": keep_answers,
+        "add": addition_proof,
+        "together": several_voyages,
         "peer": sparse_peer,
         "prior": prior_fit,
         "variation": variation_fit,

@@ -102,11 +102,17 @@ def figures(rows: Sequence[Row]) -> dict[str, Share]:
 
 def page(rows: Sequence[Row], fit: dict[str, Any] | None = None) -> str:
     """The whole page."""
-    again = [decided(r) for r in rows]
-    out = [*_head(rows), *_figures(rows)]
+    fitted = fit["page"] if fit else []
+    return "\n".join([*head(rows), *_figures(rows), *in_detail(rows), *fitted, *cost(rows)]) + "\n"
+
+
+def in_detail(rows: Sequence[Row]) -> list[str]:
+    """The sections by family, effect, posterior, reason and p-value, of the answers that the table of today
+    gives."""
+    again, out = [decided(r) for r in rows], []
     for part in (_families, _effects, _reliability, _reasons, _conformal):
         out += part(again)
-    return "\n".join([*out, *(fit["page"] if fit else []), *_cost(rows)]) + "\n"
+    return out
 
 
 def lines(title: str, text: str, head: Sequence[str], body: Sequence[Sequence[object]]) -> list[str]:
@@ -116,7 +122,8 @@ def lines(title: str, text: str, head: Sequence[str], body: Sequence[Sequence[ob
     return out + [f"| {' | '.join(str(cell) for cell in row)} |" for row in body]
 
 
-def _head(rows: Sequence[Row]) -> list[str]:
+def head(rows: Sequence[Row]) -> list[str]:
+    """The title, how many ships and voyages there are, and what counts as right."""
     ships, families = len({(r["family"], r["seed"]) for r in rows}), len({r["family"] for r in rows})
     about = (
         f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream "
@@ -132,7 +139,7 @@ def _head(rows: Sequence[Row]) -> list[str]:
         *wrap(about, 108),
         "",
         "```sh",
-        "python -m bench.fleet run FOLDER --seeds 0-7 --voyages 8 --workers 16",
+        "python -m bench.fleet run FOLDER --seeds 0-7 --voyages 8 --workers 16   # and --seeds 12-13",
         "python -m bench.fleet keep --first FOLDER",
         "python docs/results_page.py",
         "```",
@@ -240,7 +247,8 @@ def _at_least(rows: Sequence[Row]) -> Share:
     return share([r["p_value"] <= r["p_value_at_best"] for r in rows])
 
 
-def _cost(rows: Sequence[Row]) -> list[str]:
+def cost(rows: Sequence[Row]) -> list[str]:
+    """The section on processor time."""
     own, first = [r["cpu_s"] for r in rows], [r["calibration_s"] for r in rows]
     return [
         "",

@@ -1,56 +1,82 @@
-"""docs/results/judgement.md, as far as it is made of the kept answers (keep_answers.py): the first batch, the
-second and the third, which no fit had seen, and all with the latest answer to each voyage."""
+"""docs/results/judgement.md, as far as it is made of the kept answers (keep_answers.py): all voyages with the
+latest answer to each; and the batches as they were answered when no fit had seen them."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from bench.fleet import answer_score, decision_fit, probability_fit
+from bench.fleet import (
+    addition_proof,
+    answer_score,
+    decision_fit,
+    kept_ships,
+    probability_fit,
+    several_voyages,
+)
+from bench.fleet.addition_proof import KEPT_ADDITIONS
 from bench.fleet.answer_score import Row, share
 from bench.fleet.decided_again import decided
-from bench.fleet.fleet_page import FIGURES, SHORT, figures, in_short, lines, page
+from bench.fleet.fleet_page import FIGURES, SHORT, cost, figures, head, in_detail, in_short, lines
 from bench.fleet.kept_rows import of_batch, together
+from bench.fleet.several_voyages import KEPT_TOGETHER
 from bench.fleet.voyage_plan import practice
 
+ADDED = (
+    "`twin add` of the lasting causes that were named on {voyages} voyages of {ships} ships, fitted to that "
+    "voyage and proved on two more with the same fault, on other days and courses; and proved by thirds of "
+    "the voyage itself (`--cross-validated`). Errors: open-loop position error at the longest horizon on the "
+    "two voyages, median (10 to 90 %); healthy: of the same ship file on the same days and courses with "
+    "nothing wrong. Made by `python -m bench.fleet add FOLDER --keep`."
+)
+ASKED_TOGETHER = (
+    "{cases} of these voyages asked alone, and together with one and two more of the same ship, on other "
+    "days and courses, with the same fault. Made by `python -m bench.fleet together FOLDER --kinds single "
+    "pair nothing --keep`; cases in the order of the ships until the time was over."
+)
 STRICTER = (5.0, 6.0, 7.0, 8.0)  # SIGNIFICANT, from the one that stands
 
 
 def judgement(rows: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
-    """The page of these rows; `fit`: what families of ships ask for (decision_fit.chosen), by `first` and
-    `together`."""
-    first, every = of_batch(rows, "first"), together(rows)
-    fitted = decision_fit.held_out(decision_fit.with_facts(first), fit["first"])
-    out = [page(first, {"page": decision_fit.fitted_lines(fitted)}).rstrip("\n")]
-    return (
-        "\n".join(
-            [
-                *out,
-                *_blind(rows, every),
-                *_practices([decided(r) for r in every]),
-                *_all(every, fit),
-            ]
-        )
-        + "\n"
-    )
+    """The page of these rows; `fit`: what the ships of the other families ask for (decision_fit.chosen)."""
+    every = together(rows)
+    read = decision_fit.with_facts(every)
+    fitted = decision_fit.fitted_lines(decision_fit.held_out(read, fit))
+    told = probability_fit.page_lines(probability_fit.fitted(probability_fit.examples(read)))
+    tables = [*_batches(rows, every), *_further(), *in_detail(every)]
+    tables += _practices([decided(r) for r in every])
+    return "\n".join([*head(every), *tables, *fitted, *_moved(read), *told, *cost(every)]) + "\n"
 
 
-def _blind(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
-    second, third, again = (of_batch(rows, asked) for asked in ("blind", "third", "again"))
-    one, two, three = figures(second), figures(third), figures([decided(r) for r in every])
-    body = [(name, FIGURES[name][0], one[name], two[name], three[name]) for name in FIGURES]
-    for name, of in (
-        ("95 % intervals of rightly named causes that hold the truth", _intervals),
-        ("causes with a posterior of 0.95 or more that are there", _sure),
+def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
+    first, second, third, again = (of_batch(rows, asked) for asked in ("first", "blind", "third", "again"))
+    batches = (first, second, third, [decided(r) for r in every])
+    each = [figures(batch) for batch in batches]
+    body = [(name, FIGURES[name][0], *(of[name] for of in each)) for name in FIGURES]
+    for name, goal, of in (
+        ("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", _intervals),
+        ("causes with a posterior of 0.95 or more that are there", "", _sure),
     ):
-        body.append((name, "", of(second), of(third), of(every)))
+        body.append((name, goal, *(of(batch) for batch in (first, second, third, every))))
     text = (
-        f"{len(second)} further voyages of the same ships, asked by the table of today before anything was "
-        f"fitted to them; and {len(third)} of new ships, of which no fit had seen any, asked again with what "
-        f"was named in the model. Beside them all {len(every)} voyages, with the latest of their answers: "
-        f"{len(again)} were asked again, most of them when something was mended that could touch them. Nine "
-        "voyages stand in the first two batches."
+        f"All {len(every)} voyages with the latest of their answers, as the table of today decides them: "
+        f"{len(again)} were asked again, most of them when something was mended that could touch them. "
+        f"Beside them each batch as it was answered first: {len(first)} voyages, to which three thresholds "
+        f"were fitted afterwards; {len(second)} further voyages of the same ships, asked before anything was "
+        f"fitted to them; and {len(third)} of new ships, of which no fit had seen any. Nine voyages stand in "
+        "the first two batches."
     )
-    head = ("", "goal", f"second batch ({len(second)})", f"third batch ({len(third)})", f"all ({len(every)})")
-    return lines("The second batch and the third", text, head, body)
+    columns = ("first", "second", "third")
+    titles = [f"{n} batch ({len(b)})" for n, b in zip(columns, batches, strict=False)]
+    return lines("Figures", text, ("", "goal", *titles, f"all ({len(every)})"), body)
+
+
+def _further() -> list[str]:
+    """What the owner does after an answer."""
+    added, together = (kept_ships.kept(path) for path in (KEPT_ADDITIONS, KEPT_TOGETHER))
+    ships = len({row["key"].rpartition("-")[0] for row in added})
+    out = ["", "## What was named, added", "", ADDED.format(voyages=len(added), ships=ships), ""]
+    out += addition_proof.table(added)
+    out += ["", "## Voyages asked together", "", ASKED_TOGETHER.format(cases=len(together)), ""]
+    return out + several_voyages.table(together)
 
 
 def _practices(rows: Sequence[Row]) -> list[str]:
@@ -68,7 +94,7 @@ def _practices(rows: Sequence[Row]) -> list[str]:
                 *(in_short(of[name]) for name in SHORT.values()),
             )
         )
-    text = "All voyages of the three batches with the latest of their answers, by the practice of the owner."
+    text = "By the practice of the owner."
     return lines("By reference voyages", text, ("references", "of", "ships", *SHORT), body)
 
 
@@ -80,24 +106,13 @@ def _sure(rows: Sequence[Row]) -> answer_score.Share:
     return share([there for r in rows for p, there in answer_score.answered_posteriors(r) if p >= 0.95])
 
 
-def _all(every: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """The decision asked again of all voyages: one threshold moved, each family held out, and what the
-    probabilities that are told are worth."""
-    rows = decision_fit.with_facts(every)
+def _moved(rows: Sequence[Row]) -> list[str]:
+    """The decision asked again with one threshold moved."""
     at = {}
     for value in STRICTER:
         with decision_fit.thresholds({"SIGNIFICANT": value}):
             at[value] = decision_fit.outcome(rows, decision_fit.by_table)
-    fitted = decision_fit.held_out(rows, fit["together"])
-    moved = fitted["held_out"]["thresholds moved"]
-    body = [
-        (name, *(f"{of[name][0]} of {of[name][1]}" for of in at.values()), moved[name])
-        for name in at[STRICTER[0]]
-    ]
-    text = (
-        "All voyages of the three batches with the latest of their answers, decided by the table of today "
-        "with `SIGNIFICANT` as it is (5) and moved; and with the thresholds that the other families ask for."
-    )
-    head = ("", *(f"`SIGNIFICANT` {value:g}" for value in STRICTER), "each family held out")
-    out = lines("The thresholds asked again", text, head, body)
-    return out + probability_fit.page_lines(probability_fit.fitted(probability_fit.examples(rows)))
+    body = [(name, *(f"{of[name][0]} of {of[name][1]}" for of in at.values())) for name in at[STRICTER[0]]]
+    text = "All voyages, decided by the table of today with `SIGNIFICANT` as it is (5) and moved."
+    titles = ("", *(f"`SIGNIFICANT` {value:g}" for value in STRICTER))
+    return lines("One threshold moved", text, titles, body)

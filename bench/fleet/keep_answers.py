@@ -28,14 +28,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """The rows put down, and what families of ships ask of the decision for the one that is left out: of the
-    first batch, and of all voyages, each with its latest answer. (Minutes.)"""
+    """The rows put down, and what families of ships ask of the decision for the one that is left out: of
+    all voyages, each with its latest answer. (Minutes.)"""
     if not any(getattr(args, asked) for asked in kept_rows.TIMES):
         raise UsageError("no folder of answers is given: --first FOLDER, or --beside --again FOLDER.")
     answers = [(row, asked) for asked in kept_rows.TIMES for row in rows_of(getattr(args, asked))]
     (kept_rows.write_beside if args.beside else kept_rows.write)(answers, TABLE, FACTS)
     rows = kept_rows.read(TABLE, FACTS)
-    each = {"first": kept_rows.of_batch(rows, "first"), "together": kept_rows.together(rows)}
-    fit = {name: decision_fit.chosen(decision_fit.with_facts(of)) for name, of in each.items()}
+    fit = decision_fit.chosen(decision_fit.with_facts(kept_rows.together(rows)))
     FIT.write_text(json.dumps(fit, indent=1) + "\n")
     return 0

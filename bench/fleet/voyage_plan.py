@@ -95,13 +95,45 @@ def can_show(ship: RandomShip, name: str) -> bool:
 
 
 def sailed(ship: RandomShip, case: FleetCase) -> SailedCase:
-    rng = generator(ship, 3, case.number)
-    day, flaws = fleet_weather.draw(ship.p, rng, False), hidden_causes.Flaws()
-    for name, strength in case.hidden.items():
-        change = hidden_causes.EVERY[name](ship.p, ship.drive, rng, strength)
+    rng, day, changes = changed(ship, case)
+    flaws = hidden_causes.Flaws()
+    for change in changes.values():
         flaws, day = replace(flaws, **change.flaws), replace(day, **change.weather)
+    return _on_a_plan(ship, case.key, day, flaws, rng)
+
+
+def changed(
+    ship: RandomShip, case: FleetCase
+) -> tuple[np.random.Generator, fleet_weather.FleetWeather, dict[str, hidden_causes.HiddenChange]]:
+    """The day of a case as it is without what is hidden, what each hidden thing changes, and the generator
+    that draws what follows."""
+    rng = generator(ship, 3, case.number)
+    day = fleet_weather.draw(ship.p, rng, False)
+    hidden = case.hidden.items()
+    return rng, day, {n: hidden_causes.EVERY[n](ship.p, ship.drive, rng, s) for n, s in hidden}
+
+
+def sailed_again(ship: RandomShip, case: FleetCase, number: int, healthy: bool) -> SailedCase:
+    """One more voyage, on another day and course, with what is wrong with ship and instruments as it is in
+    the case; `healthy`: with nothing wrong on the same day and course."""
+    flaws = hidden_causes.Flaws()
+    for name, change in ({} if healthy else changed(ship, case)[2]).items():
+        if name not in hidden_causes.OF_THE_VOYAGE:
+            flaws = replace(flaws, **change.flaws)
+    rng = generator(ship, 6, case.number, number)
+    day = fleet_weather.draw(ship.p, rng, False)
+    return _on_a_plan(ship, f"{case.key}_{number + 1}", day, flaws, rng)
+
+
+def _on_a_plan(
+    ship: RandomShip,
+    name: str,
+    day: fleet_weather.FleetWeather,
+    flaws: hidden_causes.Flaws,
+    rng: np.random.Generator,
+) -> SailedCase:
     plan_name = str(rng.choice(["mixed", "mixed", "zigzag", "courses", "speeds", "circle"]))
-    return _sailed(ship, case.key, plan_name, day, flaws, rng)
+    return _sailed(ship, name, plan_name, day, flaws, rng)
 
 
 def _sailed(
