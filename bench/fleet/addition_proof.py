@@ -68,7 +68,7 @@ def _of_voyage(job: Job) -> dict[str, Any]:
         "kind": row["kind"],
         "hidden": row["hidden"],
         "names": names,
-        "right": not wrong_names(row),
+        "right": not wrong_names({**row, "missing": names}),
     }
     asked = voyage(as_asked(ship, case))
     further, healthy = (
@@ -115,7 +115,10 @@ def table(rows: Sequence[dict[str, Any]]) -> list[str]:
     kinds = {
         "right, a healthy ship is nearer than 0.8 of the error": [r for r in done if r["right"] and _pays(r)],
         "right, else": [r for r in done if r["right"] and not _pays(r)],
-        "a name is wrong": [r for r in done if not r["right"]],
+        "a name is wrong": [r for r in done if not r["right"] and r["kind"] != "outside"],
+        "what is hidden is outside the catalogue": [
+            r for r in done if not r["right"] and r["kind"] == "outside"
+        ],
     }
     for what, some in kinds.items():
         thirds = [r["by_thirds"]["accepted"] for r in some if "accepted" in r["by_thirds"]]

@@ -45,7 +45,7 @@ def test_only_right_names_that_could_pay_count_as_owed():
         added(True, True, 10.0, 4.0, 4.0),
         added(False, True, 10.0, 5.0, 4.0),
         added(False, True, 10.0, 9.5, 9.0),
-        added(True, False, 10.0, 9.0, 4.0),
+        added(True, False, 10.0, 9.0, 4.0) | {"kind": "pair"},
         {"failed": "too short"},
     ]
     said = table(rows)
