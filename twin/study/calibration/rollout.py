@@ -50,7 +50,7 @@ class _PathProblem:
         self.scale = np.ones(1)
 
     def values(self, z: np.ndarray) -> list[float]:
-        return list((self.centre + self.sd * z).tolist())
+        return list(np.clip(self.centre + self.sd * z, self.lo, self.hi).tolist())
 
     def off(self, z: np.ndarray) -> np.ndarray:
         """(W, K, 4) errors of all predictions, zero where nothing was measured."""
