@@ -24,7 +24,7 @@ from twin.recording.mapping import FRAMED
 
 WIDEST = 64  # samples to either side that a slope may be taken of
 ROWS = 2000  # of each axis that are asked; more say nothing more
-MOST = 0.5  # of its scatter: more is the position's than its own
+OF_THE_POSITION = 0.5  # of its scatter: more is the position's than its own
 ORDER = 8  # of the differences that show the positions' own scatter, comb(2 k, k) times its variance
 EXACT = 0.1  # by which the weights may make more or less than a slope; knots would make twice as much
 SCATTER = 1.4826  # standard deviation over median absolute deviation, of a normal distribution
@@ -47,9 +47,9 @@ def no_second_reading(
     if half < 2:
         return {}
     step_s = float(np.median(np.diff(time_s[there])))
-    if position_share(place, velocity, half, step_s) < MOST:
+    if position_share(place, velocity, half, step_s) < OF_THE_POSITION:
         return {}
-    if position_share(place, velocity, 1, step_s) > MOST:
+    if position_share(place, velocity, 1, step_s) > OF_THE_POSITION:
         return {}  # from one sample to the next: the position may as well be the sum of the velocity
     return dict.fromkeys(FRAMED, "as recorded, a slope of the recorded position: no second reading")
 

@@ -9,7 +9,7 @@ import pytest
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
-from twin.study.calibration.rollout import HORIZON, _PathProblem, rolled_out
+from twin.study.calibration.rollout import HORIZON, PathProblem, rolled_out
 from twin.study.estimation.columns import core_unknowns
 from twin.study.prediction.openloop import coarse, coarse_each
 from twin.study.prediction.trial import shaft_speed
@@ -82,7 +82,7 @@ def test_a_number_at_the_end_of_its_box_is_its_end_to_the_bit(true):
     """An end in widths of a prior is a rounding error off, and no ship file may hold what lies outside."""
     (own,) = (u for u in core_unknowns(true) if u.name == "X_udot")
     own = replace(own, centre=-0.0127, sd=0.003)
-    problem = _PathProblem([], true, [own], {})
+    problem = PathProblem([], true, [own], {})
     assert problem.centre + problem.sd * problem.box[1] > own.hi
     assert problem.values(problem.box[1]) == [own.hi]
 
