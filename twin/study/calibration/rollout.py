@@ -76,8 +76,8 @@ class PathProblem:
         return np.concatenate(parts, axis=1)
 
     def weigh(self, z: np.ndarray) -> None:
-        """Sets the usual size of an error, by lead and channel, as it is at z (P,); neighbouring predictions share
-        most of theirs."""
+        """Sets the usual size of an error, by lead and channel, as it is at z (P,); neighbouring predictions
+        share most of theirs."""
         usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
         self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(COMPARED_STATES) * LEADS * OVERLAP)
 
