@@ -199,8 +199,8 @@ def test_a_cause_that_brings_nothing_beside_the_others_is_not_told_with_numbers_
     it 0.55 m. Expected: no "does not reduce the error (0.57 m with it, 0.82 m without)"."""
     c = {"parameters": [], "error_with": 0.57, "error_without": 0.82, "posterior": 1.0}
     said = words(c, "no_nearer")
-    assert "with the other effects alone, or with fewer of them" in said and "0.57 m with it" in said
-    assert "0.82" not in said and "0.82 m without" in words(c | {"error_with": 0.9}, "no_nearer")
+    assert "with the other effects alone, or with fewer of them" in said and "0.570 m with it" in said
+    assert "0.820" not in said and "0.820 m without" in words(c | {"error_with": 0.9}, "no_nearer")
 
 
 def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
