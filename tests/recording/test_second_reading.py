@@ -8,6 +8,7 @@ from twin.recording.import_voyage import import_voyage
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.write import write_voyage
+from twin.study.instruments.instrument_lines import turned_by
 from twin.study.instruments.instrument_samples import of_voyage
 from twin.study.track.track import READINGS, track
 
@@ -53,8 +54,10 @@ def test_a_slope_of_the_recorded_position_is_no_second_reading(camera, write_csv
 
 def test_where_the_velocity_is_no_reading_none_turned_it_by_its_own_attitude(camera, write_csv, sail):
     """Else the age of the position is asked of the ship's drift alone, which cannot tell it."""
-    assert of_voyage(read_voyage(write_csv(camera()))).own is None
-    assert of_voyage(read_voyage(write_csv(sail(300.0)))).own is True
+    slope, measured = (of_voyage(read_voyage(write_csv(columns))) for columns in (camera(), sail(300.0)))
+    assert slope.own is None and measured.own is True
+    assert "no velocity over ground was measured" in turned_by(slope, False)
+    assert "turned by an attitude of the receiver" in turned_by(measured, True)
 
 
 def test_velocities_to_north_and_east_that_are_slopes_are_known_too(camera, write_csv, tmp_path):
