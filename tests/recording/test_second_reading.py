@@ -74,13 +74,14 @@ def test_a_velocity_that_was_measured_stays_a_reading(sail, write_csv, noise):
     assert not read_voyage(write_csv(sail(300.0, noise=noise))).meta["derived"]
 
 
-def test_a_position_that_was_summed_from_the_velocity_leaves_it_a_reading(sail, write_csv):
-    """Dead reckoning: every position is the one before and the velocity times the step; the velocity is the
-    instrument."""
+@pytest.mark.parametrize("ahead", [0.0, 0.5, 1.0])
+def test_a_position_that_was_summed_from_the_velocity_leaves_it_a_reading(sail, write_csv, ahead):
+    """Dead reckoning: every position is the one before and the velocity times the step, that at its beginning, at
+    its end or the mean of both; the velocity is the instrument."""
     columns = sail(300.0)
     t, psi = columns["time_s"], np.radians(columns["heading_true_north_deg"])
     w = (columns[VELOCITY[0]] + 1j * columns[VELOCITY[1]]) * np.exp(1j * psi)
-    place = np.r_[0.0, np.cumsum(w[:-1] * np.diff(t))]
+    place = np.r_[0.0, np.cumsum(((1.0 - ahead) * w[:-1] + ahead * w[1:]) * np.diff(t))]
     v = read_voyage(write_csv(columns | {"north_m": place.real, "east_m": place.imag}))
     assert set(VELOCITY).isdisjoint(v.meta["derived"])
 

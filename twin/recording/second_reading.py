@@ -47,11 +47,25 @@ def no_second_reading(
     if half < 2:
         return {}
     step_s = float(np.median(np.diff(time_s[there])))
-    if position_share(place, velocity, half, step_s) < OF_THE_POSITION:
+    if position_share(place, velocity, half, step_s) < OF_THE_POSITION or is_a_sum(place, velocity):
         return {}
-    if position_share(place, velocity, 1, step_s) > OF_THE_POSITION:
-        return {}  # from one sample to the next: the position may as well be the sum of the velocity
     return dict.fromkeys(FRAMED, "as recorded, a slope of the recorded position: no second reading")
+
+
+def is_a_sum(place: np.ndarray, velocity: np.ndarray) -> bool:
+    """Whether the position (N, 2) [m] goes from sample to sample as the velocity (N, 2) [m/s] at these two
+    says, nearer than its own scatter lets it: then it may be the sum of what the velocity measured."""
+    ways = np.concatenate(np.diff(place, axis=0).T)
+    at_both = np.column_stack([np.concatenate(velocity[:-1].T), np.concatenate(velocity[1:].T)])
+    left = np.mean((ways - at_both @ np.linalg.lstsq(at_both, ways, rcond=None)[0]) ** 2)
+    return bool(left < OF_THE_POSITION * 2.0 * own_variance(place))
+
+
+def own_variance(place: np.ndarray) -> float:
+    """That of the scatter of each position (N, 2) [m] for itself [m2]: of a smooth path no difference of so
+    high an order is left."""
+    rough = np.diff(place, ORDER, axis=0)
+    return float((SCATTER * np.median(np.abs(rough))) ** 2 / comb(2 * ORDER, ORDER))
 
 
 def position_share(place: np.ndarray, velocity: np.ndarray, half: int, step_s: float) -> float:
@@ -65,7 +79,5 @@ def position_share(place: np.ndarray, velocity: np.ndarray, half: int, step_s: f
     if abs(float(weights @ beside) * step_s - 1.0) > EXACT:
         return 0.0
     left = np.sum((shown - apart @ weights) ** 2) / (shown.size - weights.size)
-    rough = np.diff(place, ORDER, axis=0)  # of a smooth path none is left
-    variance = (SCATTER * np.median(np.abs(rough))) ** 2 / comb(2 * ORDER, ORDER)
-    passed = variance * (weights @ weights + weights.sum() ** 2)
+    passed = own_variance(place) * (weights @ weights + weights.sum() ** 2)
     return float(1.0 - left / passed) if passed > 0.0 else 0.0
