@@ -83,6 +83,11 @@ PARTS = {
 SPREADSHEET = {"Utc": [f"{45429 + (30600 + t) / 86400:.9f}" for t in T], "BSP": 6 / KNOT + 0 * T, **dict(
     list(AMERICAN.items())[1:])}  # fmt: skip
 
+BASIN = {
+    "COUNT_ms": 7000 + 1000 * T, "Xo_mm": 1000 * PLACE.real, "Yo_mm": 1000 * PLACE.imag, "YAW_rad": np.radians(PSI),
+    "u_mmps": 6000 + 0 * T, "v_mmps": 0 * T, "GYRO_Z_radps": np.radians(RATE), "RUD_deg": RUDDER, "n_rps": TURNS / 60,
+}  # fmt: skip
+
 
 @pytest.mark.parametrize(
     ("columns", "how"),
@@ -97,6 +102,7 @@ SPREADSHEET = {"Utc": [f"{45429 + (30600 + t) / 86400:.9f}" for t in T], "BSP": 
         (SIGNALK, {"separator": "\t"}),
         (PARTS, {"separator": "|"}),
         (SPREADSHEET, {}),
+        (BASIN, {"above": "Model 4711, free running\n"}),
     ],
     ids=[
         "german",
@@ -106,6 +112,7 @@ SPREADSHEET = {"Utc": [f"{45429 + (30600 + t) / 86400:.9f}" for t in T], "BSP": 
         "signalk",
         "six-columns",
         "spreadsheet-days",
+        "model-basin",
     ],
 )
 def test_a_table_goes_in_by_its_proposed_map(tmp_path, columns, how):

@@ -11,6 +11,7 @@ from twin.recording.mapping import PLACES
 from twin.recording.place import CHART, FRAMED, derive, present
 from twin.recording.raw import Raw
 from twin.recording.samples import plausible
+from twin.recording.second_reading import no_second_reading
 from twin.recording.timebase import (
     rebuilt,
     refuse_backwards,
@@ -47,7 +48,8 @@ def finished(raw: Raw, controls: bool = True) -> Finished:
     require(raw, controls)
     columns, derived = derive(raw.time_s, raw.columns)
     meta = {k: v for k, v in raw.meta.items() if v}
-    meta["derived"] = meta.get("derived", {}) | derived
+    derived = meta.get("derived", {}) | derived
+    meta["derived"] = derived | no_second_reading(raw.time_s, columns, derived)
     meta["notes"] = (*meta.get("notes", ()), *raw.notes)
     meta["lost"] = (*meta.get("lost", ()), *raw.lost)
     return Finished(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)

@@ -50,6 +50,7 @@ def time_entry(files: Sequence[SeenColumns]) -> dict[str, Any]:
         return parts
     if pair := seconds_and_rest(seen, common, times):
         return pair
+    times = times or [n for n in common if counts_by_its_unit(seen, n)]
     if not times:
         return {"column": "TIME", "why": "NOT FOUND: which column is the time?"}
     dates = [
@@ -76,6 +77,12 @@ def time_entry(files: Sequence[SeenColumns]) -> dict[str, Any]:
         ),
     )
     return {"column": seen.key(name), **clock_of(seen, name)}
+
+
+def counts_by_its_unit(seen: SeenColumns, name: str) -> bool:
+    """Whether a column whose name is no clock's has a unit of time, and every number beyond the last."""
+    unit, numbers = words_of(name)[1] or seen.units.get(name, ""), seen.numbers(name)
+    return unit in UNITS["s"] and numbers.size > 1 and bool(np.all(np.diff(numbers) > 0.0))
 
 
 def clock_of(seen: SeenColumns, name: str) -> dict[str, Any]:

@@ -10,7 +10,7 @@ KNOT_MPS = 1852.0 / 3600.0
 UNITS: dict[str, dict[str, float]] = {
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "d": 86400.0},
     "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "nmi": 1852.0},
-    "mps": {"m/s": 1.0, "kn": KNOT_MPS, "km/h": 1.0 / 3.6, "ft/s": 0.3048},
+    "mps": {"m/s": 1.0, "kn": KNOT_MPS, "km/h": 1.0 / 3.6, "ft/s": 0.3048, "cm/s": 1e-2, "mm/s": 1e-3},
     "deg": {"deg": 1.0, "rad": DEG_PER_RAD, "cdeg": 1e-2, "degE7": 1e-7},
     "degps": {"deg/s": 1.0, "deg/min": 1.0 / 60.0, "rad/s": DEG_PER_RAD},
     "rpm": {"rpm": 1.0, "1/min": 1.0, "1/s": 60.0, "Hz": 60.0, "rad/s": 30.0 / pi},

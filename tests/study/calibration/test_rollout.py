@@ -1,13 +1,15 @@
 """The core is led to where the ship went: from a wrong one it finds its way, and stays inside what ships
 have."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
-from twin.study.calibration.rollout import HORIZON, rolled_out
+from twin.study.calibration.rollout import HORIZON, PathProblem, rolled_out
 from twin.study.estimation.columns import core_unknowns
 from twin.study.prediction.openloop import coarse, coarse_each
 from twin.study.prediction.trial import shaft_speed
@@ -74,6 +76,15 @@ def test_a_core_that_predicts_well_stays_where_it_is(true):
     found = rolled_out([track], true, unknowns, {})
     moved = [abs(getattr(found.ship.derivatives, u.name) - u.centre) / u.sd for u in unknowns]
     assert max(moved) < 0.3 and miss(track, found) <= 1.05 * miss(track, true) + 0.05
+
+
+def test_a_number_at_the_end_of_its_box_is_its_end_to_the_bit(true):
+    """An end in widths of a prior is a rounding error off, and no ship file may hold what lies outside."""
+    (own,) = (u for u in core_unknowns(true) if u.name == "X_udot")
+    own = replace(own, centre=-0.0127, sd=0.003)
+    problem = PathProblem([], true, [own], {})
+    assert problem.centre + problem.sd * problem.box[1] > own.hi
+    assert problem.values(problem.box[1]) == [own.hi]
 
 
 def test_windows_begin_only_where_they_may_and_perhaps_nowhere():

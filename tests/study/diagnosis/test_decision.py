@@ -194,6 +194,15 @@ def test_every_reason_for_not_naming_has_words_of_its_own():
     assert said["unlikely"] == "its posterior probability, 85 %, is below the 90 % needed to name it"
 
 
+def test_a_cause_that_brings_nothing_beside_the_others_is_not_told_with_numbers_that_say_it_does():
+    """Test: the model alone ends 0.82 m off and with the whole explanation 0.57 m, but with the other effects of
+    it 0.55 m. Expected: no "does not reduce the error (0.57 m with it, 0.82 m without)"."""
+    c = {"parameters": [], "error_with": 0.57, "error_without": 0.82, "posterior": 1.0}
+    said = words(c, "no_nearer")
+    assert "with the other effects alone, or with fewer of them" in said and "0.570 m with it" in said
+    assert "0.820" not in said and "0.820 m without" in words(c | {"error_with": 0.9}, "no_nearer")
+
+
 def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
     unlikely = cause(probability=0.85, with_rivals=0.88)
     answer = decide(facts(unlikely))

@@ -11,6 +11,7 @@ from twin.physics.effects.sensor_delay import SensorDelay
 from twin.physics.ship import load
 from twin.study.calibration.own_instruments import established, own_instruments
 from twin.study.instruments.corrections import with_numbers
+from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_samples import of_voyage
 from twin.study.instruments.on_references import (
     KinematicOfVoyage,
@@ -115,3 +116,33 @@ def test_the_distance_of_each_reference_is_from_what_the_others_foretell():
     )
     assert usual.distances[2] == pytest.approx(0.5 / np.sqrt(0.1**2 + 0.1**2 / 2))
     assert usual.distances[0] == pytest.approx(0.25 / np.sqrt(0.1**2 + 0.1**2 / 2))
+
+
+@pytest.mark.parametrize("seconds, clock", [(0.0, "heading_delay"), (2.0, "rate_delay")])
+def test_the_clock_of_the_references_holds_until_another_instrument_is_clearly_earlier(days, seconds, clock):
+    """Test: position, heading and rate of turn alone; ages counted from the heading, as on the references.
+    Expected: where the heading is now late, from the rate of turn: from the heading it would be early, which
+    nothing is, and the late heading would show nowhere."""
+    columns = {n: x for n, x in late(days[0], HEADING, seconds).items() if n not in (U, V)}
+    found = estimate([of_voyage(voyage(columns))], 100.0, clock="heading_delay")
+    assert found.clock == clock
+    if seconds:
+        assert found.of("heading_delay").value == pytest.approx(seconds, abs=0.1)
+        assert "heading_delay" in found.faults
+
+
+def test_counted_from_the_other_instrument_an_age_is_what_the_first_was_earlier_by():
+    told = tuple(KinematicOfVoyage(n, x, 0.1, 0.0) for n, x in zip("ab", (0.2, 0.4), strict=True))
+    usual = KinematicUsual(0.3, 0.1, 0.05, told)
+    before = KinematicRecord(
+        "heading_delay", (), False, {"rate_delay": usual, "log_delay": usual, "A": usual}
+    )
+    after = before.counted_from("rate_delay")
+    assert after.clock == "rate_delay" and set(after.numbers) == {"heading_delay", "A"}
+    assert (
+        after.numbers["heading_delay"].value == -0.3
+        and after.numbers["heading_delay"].next_sd == usual.next_sd
+    )
+    assert [v.value for v in after.numbers["heading_delay"].voyages] == [-0.2, -0.4]
+    assert after.numbers["A"] == usual and before.counted_from("heading_delay") is before
+    assert before.counted_from("gnss_delay") is before  # of it the references told nothing

@@ -19,6 +19,7 @@ from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
+from twin.study.update.added import sailing_time
 from twin.study.update.adding import fitted
 from twin.study.update.addition import add
 from twin.study.update.proof import HeldOutProof, block_interval, prove
@@ -253,3 +254,7 @@ def test_an_effect_of_the_one_screw_is_refused_for_a_ship_with_actuators(tmp_pat
     capsys.readouterr()
     assert main(["effects", "ThrusterWear"]) == 0
     assert "next: twin add ThrusterWear.NAME --ship" in capsys.readouterr().out
+
+
+def test_how_much_more_sailing_is_told_in_seconds_where_runs_last_a_minute():
+    assert [sailing_time(s) for s in (54.0, 150.0, 7300.0)] == ["54 s", "2 minutes", "2 hours"]

@@ -89,8 +89,8 @@ RULES: tuple[GuessRule, ...] = (
         "east,easting,y ned,y position,position east,yned,pose position y,position e,e position",
         f"velocity speed {NO_MOTION} target",
     ),
-    *_rules("plain_x", "x", f"velocity speed y z w {NO_MOTION} orientation angular linear q quaternion"),
-    *_rules("plain_y", "y", f"velocity speed x z w {NO_MOTION} orientation angular linear q quaternion"),
+    *_rules("plain_x", "x,xo", f"velocity speed y z w {NO_MOTION} orientation angular linear q quaternion"),
+    *_rules("plain_y", "y,yo", f"velocity speed x z w {NO_MOTION} orientation angular linear q quaternion"),
     *_rules(
         "heading_true_north_deg",
         "heading,hdg,hdt,ths,psi,yaw,gyro,heading true,true heading,head,heading gyro,hdg gyro,course steered,pose theta",

@@ -31,7 +31,7 @@ LEAST_FALL = 0.02  # share by which the cost must fall for another round
 
 
 @dataclass
-class _PathProblem:
+class PathProblem:
     """The unknowns in prior widths from their centres, and what the tracks say of them."""
 
     tracks: Sequence[Track]
@@ -50,7 +50,8 @@ class _PathProblem:
         self.scale = np.ones(1)
 
     def values(self, z: np.ndarray) -> list[float]:
-        return list((self.centre + self.sd * z).tolist())
+        """The numbers at z (P,), each in its own unit and inside its box to the last bit."""
+        return list(np.clip(self.centre + self.sd * z, self.lo, self.hi).tolist())
 
     def off(self, z: np.ndarray) -> np.ndarray:
         """(W, K, 4) errors of all predictions, zero where nothing was measured."""
@@ -75,13 +76,13 @@ class _PathProblem:
         return np.concatenate(parts, axis=1)
 
     def weigh(self, z: np.ndarray) -> None:
-        """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share
-        most of theirs."""
+        """Sets the usual size of an error, by lead and channel, as it is at z (P,); neighbouring predictions
+        share most of theirs."""
         usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
         self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(COMPARED_STATES) * LEADS * OVERLAP)
 
     def residual(self, z: np.ndarray) -> np.ndarray:
-        """One error in units of its usual size; what is far off counts as eight times that, no more."""
+        """(R,) errors at z (P,) in units of their usual size; what is far off counts as eight times that."""
         return self.residual_each(z[None])[0]
 
     def residual_each(self, Z: np.ndarray) -> np.ndarray:
@@ -89,6 +90,7 @@ class _PathProblem:
         return (self.off_each(Z) / self.scale).clip(-8.0, 8.0).reshape(len(Z), -1)
 
     def cost(self, residual: np.ndarray, z: np.ndarray) -> float:
+        """-log probability of these errors (R,) at z (P,), but for a constant."""
         return 0.5 * float(residual @ residual) + 0.5 * float(z @ z)
 
 
@@ -97,7 +99,7 @@ def rolled_out(
 ) -> Model:
     """The model whose core leads the ship most nearly where it went, begun from `model` or from the
     unknowns' centres."""
-    problem = _PathProblem(tracks, model, unknowns, catalogue)
+    problem = PathProblem(tracks, model, unknowns, catalogue)
     here = (np.array([float(model.ship.derivative(u.name)) for u in unknowns]) - problem.centre) / problem.sd
     starts = [here, np.zeros_like(here)]
     problem.weigh(starts[0])
@@ -111,7 +113,7 @@ def rolled_out(
     return with_values(model, unknowns, problem.values(z), catalogue)
 
 
-def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
+def _descend(problem: PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
     """One step of Levenberg and Marquardt, inside the boxes and the half-spaces of a hull that dissipates; z
     itself when no step is better."""
     r = problem.residual(z)

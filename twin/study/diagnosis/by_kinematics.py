@@ -74,7 +74,7 @@ def kinematics(voyages: Sequence[Voyage], ship: Ship) -> AskedKinematics | None:
         found = estimate(voyages, float(ship.L_pp), clock=clock, own=own)
     except DataError:
         return None
-    return AskedKinematics(found, record)
+    return AskedKinematics(found, record.counted_from(found.clock) if record else None)
 
 
 def suspected_instruments(case: Case, asked: AskedKinematics) -> tuple[type[Effect], ...]:

@@ -163,7 +163,10 @@ def why_not(c: Result, reason: str) -> str:
         f"{100.0 * NAMED:.0f} % needed to name it",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
-        "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",
+        "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
+        f"({num(c['error_with'], 3)} m with it)"
+        if nearer(c)
+        else f"adding it does not reduce the open-loop error ({with_it})",
         "weather_may_mislead": ROUGHLY,
         "second_not_sure": f"a second cause needs {100.0 * CERTAIN:.0f} %: it may only be correcting an "
         "error in the form of the first",

@@ -32,8 +32,8 @@ def estimate(
 ) -> Instruments:
     """The instruments of these voyages of one ship; `length_m` of the ship, if known, scales what is believed
     of antennas and drift before any data. `clock`: the age from which others are counted, where that
-    instrument was recorded; else the earliest. `own`: whether its receiver turns its velocity by an attitude
-    of its own, if known; else what all voyages say together."""
+    instrument was recorded and none is clearly earlier; else the earliest. `own`: whether its receiver turns
+    its velocity by an attitude of its own, if known; else what all voyages say together."""
     readings = [_readings(v) for v in voyages]
     lengths = [length_m or r.length for r in readings]
     problems = _problems(readings, lengths, own, progress)
@@ -100,7 +100,9 @@ def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[Kinem
         there = [n for n in there if n in OF_ATTITUDE]
     sd = dict(zip(WeighedSets(first, "heading_delay").names, first.sd().tolist(), strict=False))
     value = {n: float(first.theta[0, INDEX[n]]) for n in there}
-    earliest = clock if clock in there else min(there, key=lambda n: value[n] + 2.0 * sd[n])
+    earliest = min(there, key=lambda n: value[n] + 2.0 * sd[n])
+    if clock in there and value[clock] - 2.0 * sd[clock] < value[earliest] + 2.0 * sd[earliest]:
+        earliest = clock
     theta = first.theta.copy()
     theta[:, [INDEX[n] for n in there]] -= value[earliest]
     return fit(problems, [n for n in names if n != earliest], theta), earliest

@@ -6,6 +6,7 @@ from typing import Any
 
 from twin.num import READABLE, num
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
+from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, effect_of
 
 SHOWN = READABLE | {"-": ("%", 100.0)}
@@ -111,12 +112,17 @@ def terminal_lines(found: Instruments) -> list[str]:
         "for prompt",
     ]
     out += [f"  {k}: {v:.2f} s (+- {1.96 * sd:.2f})" for k, (v, sd) in later.items()]
-    for r, own in zip(found.readings, found.own, strict=True):
-        out.append(
-            f"{r.name}: velocity over ground was turned by "
-            f"{'an attitude of the receiver' if own else 'the compass'}"
-        )
-    return out
+    return out + [turned_by(r, own) for r, own in zip(found.readings, found.own, strict=True)]
+
+
+def turned_by(r: Readings, own: bool) -> str:
+    """Whose attitude turned a voyage's velocity over ground, where one was measured."""
+    if "velocity" not in r.by:
+        return f"{r.name}: no velocity over ground was measured"
+    return (
+        f"{r.name}: velocity over ground was turned by "
+        f"{'an attitude of the receiver' if own else 'the compass'}"
+    )
 
 
 def _fault(found: Instruments, fault: str) -> list[str]:

@@ -74,11 +74,12 @@ def of_voyage(voyage: Voyage) -> Readings:
         ok = np.isfinite(y).all(axis=1)
         return ReadingSamples(voyage.time_s[ok], y[ok]) if ok.sum() >= LEAST_INSTRUMENT_SAMPLES else None
 
+    body = samples("surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg")
     return _readings(
         voyage.name,
         {
             "place": samples("north_m", "east_m"),
-            "body": samples("surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"),
+            "body": body,
             "velocity": samples("surge_velocity_mps", "sway_velocity_mps"),
             "heading": samples("heading_true_north_deg"),
             "rate": samples("yaw_rate_degps"),
@@ -87,7 +88,7 @@ def of_voyage(voyage: Voyage) -> Readings:
             "air": samples("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
             "roll": samples("roll_deg"),
         },
-        OWN.get(voyage.meta.get("velocity_frame", "")),
+        OWN.get(voyage.meta.get("velocity_frame", "")) if body is not None else None,
     )
 
 

@@ -6,7 +6,7 @@ measured. The scatter between voyages is found as that of the core (reference/be
 finds later is compared with these numbers."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.study.estimation.rarity import deviations
 from twin.study.instruments.by_voyage import equations, tellable
-from twin.study.instruments.findings import Instruments
+from twin.study.instruments.findings import CLOCKS, Instruments
 from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS
@@ -42,6 +42,13 @@ class KinematicUsual:
     sd: float
     between: float
     voyages: tuple[KinematicOfVoyage, ...]
+
+    @property
+    def opposite(self) -> "KinematicUsual":
+        """Of the difference of two ages: the other less the one."""
+        return replace(
+            self, value=-self.value, voyages=tuple(replace(v, value=-v.value) for v in self.voyages)
+        )
 
     @property
     def next_sd(self) -> float:
@@ -75,6 +82,14 @@ class KinematicRecord:
     def entry(self) -> dict[str, Any]:
         """As the ship file has it."""
         return asdict(self)
+
+    def counted_from(self, clock: str) -> "KinematicRecord":
+        """The same with ages counted from another instrument. By how much the one that was prompt is later
+        than that is what it was earlier by; of the other ages nothing is kept."""
+        if clock == self.clock or clock not in self.numbers:
+            return self
+        kept = {n: u for n, u in self.numbers.items() if n not in CLOCKS}
+        return replace(self, clock=clock, numbers=kept | {self.clock: self.numbers[clock].opposite})
 
     @staticmethod
     def of_notes(notes: Mapping[str, Any]) -> "KinematicRecord | None":

@@ -46,9 +46,11 @@ def informed_by(found: Fit) -> list[Derivative]:
     kept = found.model.ship.with_derivatives(**{n: d.unknown.centre for d in told for n in d.unknown.names})
     centre, prior, sd = np.array([(d.unknown.centre, d.unknown.sd, d.sd) for d in free]).T
     z = (np.array([d.fitted for d in free]) - centre) / prior
-    box = (np.array([[d.unknown.lo, d.unknown.hi] for d in free]).T - centre) / prior
+    lo, hi = np.array([(d.unknown.lo, d.unknown.hi) for d in free]).T
+    box = (np.array([lo, hi]) - centre) / prior
     near = within(z, np.diag((sd / prior) ** 2), box, half_spaces(kept, [d.unknown for d in free]))
-    value = dict(zip((d.unknown.name for d in free), (centre + prior * near).tolist(), strict=True))
+    fitted = np.clip(centre + prior * near, lo, hi)  # in widths of a prior a box ends a rounding error off
+    value = dict(zip((d.unknown.name for d in free), fitted.tolist(), strict=True))
     return [d._replace(fitted=value.get(d.unknown.name, d.fitted)) for d in told]
 
 

@@ -42,7 +42,9 @@ def refused(proof: HeldOutProof, shown: Fall) -> str:
         return f"{reason} More of such voyages would not prove it."
     if proof.more_s > FOREVER_S:
         return f"{reason} Too little of it shows to be proved in a hundred hours."
-    return f"{reason} At this rate about {_duration(proof.more_s)} more of held-out sailing would prove it."
+    return (
+        f"{reason} At this rate about {sailing_time(proof.more_s)} more of held-out sailing would prove it."
+    )
 
 
 def _ratio(proof: HeldOutProof) -> str:
@@ -68,8 +70,11 @@ def _metres(result: dict[str, Any], shown: Fall) -> str:
     )
 
 
-def _duration(seconds: float) -> str:
-    return f"{max(1.0, seconds / 60.0):.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.0f} hours"
+def sailing_time(seconds: float) -> str:
+    """So many seconds [s] in words: a model's runs last a minute or two."""
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.0f} hours"
 
 
 def notes(
