@@ -27,7 +27,7 @@ ADDED = (
     "two voyages, median (10 to 90 %); healthy: of the same ship file on the same days and courses with "
     "nothing wrong. Made by `python -m bench.fleet add FOLDER --keep`."
 )
-ASKED_TOGETHER = (
+SEVERAL = (
     "{cases} of these voyages asked alone, and together with one and two more of the same ship, on other "
     "days and courses, with the same fault. Made by `python -m bench.fleet together FOLDER --kinds single "
     "pair nothing --keep`; cases in the order of the ships until the time was over."
@@ -75,7 +75,7 @@ def _further() -> list[str]:
     ships = len({row["key"].rpartition("-")[0] for row in added})
     out = ["", "## What was named, added", "", ADDED.format(voyages=len(added), ships=ships), ""]
     out += addition_proof.table(added)
-    out += ["", "## Voyages asked together", "", ASKED_TOGETHER.format(cases=len(together)), ""]
+    out += ["", "## Voyages asked together", "", SEVERAL.format(cases=len(together)), ""]
     return out + several_voyages.table(together)
 
 

@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     def wanted(row: Mapping[str, Any]) -> bool:
         return row["kind"] in args.kinds and not set(row["hidden"]) & set(OF_THE_VOYAGE)
 
-    asked = {r["key"]: r for r in ask_again(args.folder, TOGETHER, wanted, _asked, args.workers)}
+    asked = {r["key"]: r for r in ask_again(args.folder, TOGETHER, wanted, _both_answers, args.workers)}
     alone = {r["key"]: r for folder in args.folder for r in answers(folder) if r["key"] in asked}
     rows = [_kept(alone[key], row) for key, row in asked.items()]
     print("\n".join(table(rows)))
@@ -57,7 +57,7 @@ def _kept(alone: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
     return {k: alone[k] for k in ("key", "kind", "hidden")} | {"gains": gains(alone)} | answers
 
 
-def _asked(job: Job) -> dict[str, Any]:
+def _both_answers(job: Job) -> dict[str, Any]:
     """The answers about two voyages and about three."""
     ship, case, model = opened(job)
     voyages = [voyage(sailed(ship, case))]
