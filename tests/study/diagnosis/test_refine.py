@@ -35,9 +35,9 @@ def rows(case, owner):
 
 def test_a_gears_travel_time_is_not_in_proportion_to_what_it_does_and_a_rudders_offset_is(case):
     by_label = {u.label: u for u in case.effects}
-    assert bends(case, case.model, by_label["SteeringLag.travel_time"])
-    assert not bends(case, case.model, by_label["RudderOffset.offset"])
-    assert not bends(case, case.model, by_label["PropellerWear.loss"])
+    assert bends(case, [case.model], by_label["SteeringLag.travel_time"])
+    assert not bends(case, [case.model], by_label["RudderOffset.offset"])
+    assert not bends(case, [case.model], by_label["PropellerWear.loss"])
 
 
 def test_only_what_bends_is_looked_for_far_out(case):
@@ -158,7 +158,7 @@ def test_no_hypothesis_is_likelier_for_what_it_makes_of_the_noise(case):
     by."""
     mine, z = rows(case, "Loading"), np.zeros(len(case.effects))
     z[mine[0]] = 0.5 / case.effects[mine[0]].sd
-    model, lines = about(case, z, mine, [case.effects[i] for i in mine])
+    (model,), lines = about(case, z, mine, [case.effects[i] for i in mine])
     assert model.c.m_v > 1.2 * case.model.c.m_v and standard(model) == pytest.approx(standard(case.model))
     assert all(
         np.array_equal(after.busy, before.busy) for before, after in zip(case.lines, lines, strict=True)

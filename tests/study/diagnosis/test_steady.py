@@ -21,9 +21,9 @@ def case(case_of):
 def test_what_changes_is_told_as_a_share_of_the_whole_stream(case):
     (track,) = case.tracks
     still, turning = VaryingCurrent(north=0.3, east=0.4), VaryingCurrent(north_c3=0.3)
-    assert changes(still, case.model, case.tracks) == pytest.approx(0.0, abs=1e-6)
+    assert changes([still], case.model, case.tracks) == pytest.approx(0.0, abs=1e-6)
     north = 0.3 * np.cos(3.0 * 2.0 * np.pi / 3600.0 * track.t)
-    assert changes(turning, case.model, case.tracks) == pytest.approx(
+    assert changes([turning], case.model, case.tracks) == pytest.approx(
         north.std() / np.sqrt((north**2).mean())
     )
 

@@ -10,13 +10,14 @@ from twin.study.diagnosis.case import Case
 
 
 def model_with(case: Case, names: Sequence[str], z: np.ndarray) -> Model:
-    """The ship's model with the named effects at these numbers z (Q,), in prior widths of `case.effects`."""
+    """The ship's model with the named effects at these numbers z (Q,), in prior widths of `case.effects`; of
+    numbers that each voyage has for itself those of the first."""
     model = case.model
     for name in names:
         own = {
             u.name: in_file(u.centre + u.sd * float(x), u.lo, u.hi)
             for u, x in zip(case.effects, z, strict=True)
-            if u.owner == name
+            if u.owner == name and u.acts_on(case.tracks[0])
         }
         present = next((e for e in model.effects if type(e).__name__ == name), None) or case.catalogue[
             name

@@ -69,14 +69,21 @@ def of_tracks(
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
     fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
     (`Effect.kinematic`); of those in the ship file a change is judged all the same."""
-    model, tracks = Model.of(ship), tuple(sailed)
+    model, tracks = Model.of(ship), distinct(sailed)
     wanted = {*asked, *(type(e) for e in model.effects)}
     catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in wanted}
     unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
     as_before = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
-    effects = tuple(u for name in candidates for u in effect_unknowns(judged[name], model))
+    own = {
+        n for n in candidates if judged[n].is_weather() and not judged[n].lasts() and judged[n] not in asked
+    }
+    effects = tuple(
+        u
+        for name in candidates
+        for u in of_each(effect_unknowns(judged[name], model), tracks if name in own else ())
+    )
     nuisance, rough = nuisance_unknowns(model, catalogue), rough_unknowns(model)
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
@@ -86,9 +93,9 @@ def of_tracks(
         if references
         else _of_calibration(model, nuisance)
     )
-    known = replace(
-        before.known.beside(rough), daily=dict(before.known.daily) | of_known_weather(model, catalogue)
-    )
+    daily = dict(before.known.daily) | of_known_weather(model, catalogue)
+    daily |= {u.label: daily[u.shared] for u in effects if u.shared in daily}
+    known = replace(before.known.beside(rough), daily=daily)
     progress("linearising the ship and its instruments along the tracks")
     case = Case(
         tracks=tracks,
@@ -113,6 +120,23 @@ def of_tracks(
         unnamed=tuple(unnamed),
     )
     return settle(case)
+
+
+def distinct(tracks: Sequence[Track]) -> tuple[Track, ...]:
+    """The tracks, those of one name told apart by their number."""
+    names = [t.name for t in tracks]
+    return tuple(
+        t if names.count(t.name) == 1 else replace(t, name=f"{t.name} ({i})")
+        for i, t in enumerate(tracks, start=1)
+    )
+
+
+def of_each(unknowns: Sequence[Unknown], tracks: Sequence[Track]) -> list[Unknown]:
+    """These numbers for each of the voyages by itself, where there are several: each day has its own
+    water."""
+    if len(tracks) < 2:
+        return list(unknowns)
+    return [replace(u, voyage=t.name) for t in tracks for u in unknowns]
 
 
 class KnownBefore(NamedTuple):

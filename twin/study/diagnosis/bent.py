@@ -1,11 +1,13 @@
 """Numbers of which what they do is not in proportion to them: an iteration from afar may find what one from
 nothing cannot see."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from twin.physics.model import Model
 from twin.study.diagnosis.case import Case
-from twin.study.estimation.columns import Unknown, changed, with_values
+from twin.study.estimation.columns import Unknown, changed
 from twin.study.estimation.respond import respond, standard
 
 # times the linear guess, where a Newton iteration begins again when it ended in no plain scenario, or at
@@ -17,16 +19,16 @@ BENT = 0.3  # share of what a number does that is not in proportion to it
 def bent_numbers(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
     """Parameters of which what they do is not in proportion to them: about nothing they may not be seen,
     and an iteration may end on a lower top. `mine` (M,): index; `at` (Q,) in prior widths."""
-    own = [case.effects[i] for i in mine]
-    model = with_values(
-        case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue
-    )
-    return [int(i) for i, u in zip(mine, own, strict=True) if bends(case, model, u)]
+    models = [case.at(mine, at, track) for track in case.tracks]
+    return [int(i) for i in mine if bends(case, models, case.effects[i])]
 
 
-def bends(case: Case, model: Model, unknown: Unknown) -> bool:
-    """Whether so many prior widths of a number do clearly more, or less, than so many times what one does."""
-    for line in case.lines:
+def bends(case: Case, models: Sequence[Model], unknown: Unknown) -> bool:
+    """Whether so many prior widths of a number do clearly more, or less, than so many times what one does, on
+    one of the voyages; `models`: on each."""
+    for line, model in zip(case.lines, models, strict=True):
+        if not unknown.acts_on(line.track):
+            continue
         here = model.without_inputs(line.track.missing())[0]
         none, one, far = (
             respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0]

@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.columns import Unknown
+from twin.study.estimation.columns import Unknown, with_values
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.reference.directions import directions
@@ -121,6 +121,11 @@ class Case:
             for w in map(SCENARIOS.__getitem__, names)
         )
         return [replace(noise_model, doubt=doubt) for noise_model in noise_models]
+
+    def at(self, mine: Sequence[int] | np.ndarray, z: np.ndarray, track: Track) -> Model:
+        """The model on this voyage with the effects' numbers `mine` (M,) at z (Q,), in prior widths."""
+        own = [(u, u.centre + u.sd * z[i]) for i in mine if (u := self.effects[i]).acts_on(track)]
+        return with_values(self.model, [u for u, _ in own], [value for _, value in own], self.catalogue)
 
     @cached_property
     def information(self) -> np.ndarray:

@@ -179,7 +179,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         "posterior": capped(posterior),
         "on_references": _on_references(considered, name),
         "parameters": parameters(case, sized(case, best), name),
-        "typical_force": typical_force(case, best.model, name),
+        "typical_force": typical_force(case, best, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": _without(case, found, considered, name),
         "error_with": held_out_error(case, best)
@@ -223,7 +223,7 @@ def _weather(
         }
     return out | {
         "parameters": parameters(case, sized(case, best), name),
-        "typical_force": typical_force(case, best.model, name),
+        "typical_force": typical_force(case, best, name),
     }
 
 

@@ -6,6 +6,7 @@ may then decide between two causes that explain the voyages nearly alike. Run fr
 parts it was not fitted to, a wrong cause goes astray where the true one does not. What noise and structure
 would do to a true model anyway says nothing."""
 
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,7 +15,6 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, standing
-from twin.study.estimation.columns import with_values
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.prediction.openloop import coarse, predict_each
@@ -203,7 +203,7 @@ def held_out_error(case: Case, found: Found) -> float:
     """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the
     parameters that the other half asks for, about where the hypothesis stands; the water and air of any day
     are there too, as far as they usually go. What changes with the clock is taken as the whole voyage has it:
-    no other hour tells of it."""
+    no other hour tells of it; and so are the numbers of a voyage alone that has one segment."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
     every_day = {u.label for u in case.effects if u.every_day}
@@ -212,8 +212,11 @@ def held_out_error(case: Case, found: Found) -> float:
     most = np.array(
         [np.inf if u.owner in chosen else ANY_DAY * day.get(u.label, 0.0) / u.sd for u in case.effects]
     )
-    lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
     normal = innovate(lines, case.scenarios([found.hypothesis.scenario], found.doubt), MOST_SEGMENTS)[0]
+    segments = Counter(case.tracks[i].name for i, *_ in normal.where)
+    lasts = np.array(
+        ["t" not in case.catalogue[u.owner].needs and segments.get(u.voyage or "", 2) > 1 for u in case.effects]
+    )
     half = np.arange(len(normal.where)) % 2
     total, count = 0.0, 0
     for side in (0, 1):
@@ -224,13 +227,11 @@ def held_out_error(case: Case, found: Found) -> float:
             )
             z[lasts] = posterior(given(part, z, ~lasts), chosen).z
         z = np.clip(z, -most, most)
-        values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
-        model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
         for i, track in enumerate(case.tracks):
             begins, steps = np.zeros(len(track), bool), np.searchsorted(track.steps(), lines[i].track.steps())
             for _, a, b in (w for w, s in zip(normal.where, half, strict=True) if s == side and w[0] == i):
                 begins[steps[a] : steps[b - 1] + 1] = True
-            here = model.without_inputs(track.missing())[0]
+            here = case.at(mine, z, track).without_inputs(track.missing())[0]
             errors = _errors(coarse(track, here, horizon_s(track, case.model), leads=1, begins=begins), MODEL)
             total, count = total + float(np.nansum(errors)), count + int(np.isfinite(errors).sum())
     return total / max(count, 1)

@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.diagnosis.bent import MULTI_START, bent_numbers
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.estimation.columns import ROUGH, Unknown, with_values
+from twin.study.estimation.columns import ROUGH, Unknown
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import (
@@ -41,7 +41,7 @@ class Found:
 
     hypothesis: Hypothesis
     posterior: Posterior
-    model: Model
+    model: Model  # on the first voyage
     doubt: float = 0.0  # share of its own force that may be something else
     open_loop_error_m: float = float("nan")  # held-out position error, when it was asked (open_loop_check.py)
     # and what it would be were this the truth, with the noise of the reference voyages
@@ -49,6 +49,11 @@ class Found:
     # what the voyages say about that place, in its noise scenario
     reduced: Reduced | None = field(default=None, repr=False)
     steady: bool = False  # whether it holds a stream that may change, and did not (steady.py)
+    models: tuple[Model, ...] = ()  # on each voyage, where they have numbers of their own
+
+    def on(self, voyage: int) -> Model:
+        """The model on one of the voyages."""
+        return self.models[voyage] if self.models else self.model
 
 
 def refine(
@@ -71,7 +76,7 @@ def refine(
     at = np.zeros_like(z)
     top = best_place(narrow, chosen, scenario, z[kept], hoped, part, kept)
     at[kept] = top.at
-    model, lines = about(case, at, mine, case.unknowns)
+    models, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
     doubt = form_share(narrow, chosen, top)
     reduced = _in_each(whole, whole.lines, at, doubt, top.near)
@@ -80,11 +85,9 @@ def refine(
     far = [h for scenario, h in top.judged.items() if scenario not in reduced]
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
     here = reduced[best.scenario]
-    return Found(best, boxed(here, chosen, sized(here, chosen)), model, doubt, reduced=here), [
-        *judged,
-        *far,
-        *others,
-    ]
+    told = boxed(here, chosen, sized(here, chosen))
+    found = Found(best, told, models[0], doubt, reduced=here, models=tuple(models))
+    return found, [*judged, *far, *others]
 
 
 def best_place(
@@ -263,18 +266,16 @@ def clipped(case: Case, z: np.ndarray) -> np.ndarray:
 
 def about(
     case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]
-) -> tuple[Model, list[Linear]]:
-    """The model with the parameters `mine` (M,) at z (Q,), and the tracks linearised about it (columns of
-    other unknowns than `fresh` stay what they were)."""
-    own = [case.effects[i] for i in mine]
-    values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
-    model = with_values(case.model, own, values, case.catalogue)
-    at = {u.label: v for u, v in zip(own, values, strict=True)}
+) -> tuple[list[Model], list[Linear]]:
+    """The model with the parameters `mine` (M,) at z (Q,) on each voyage, and the tracks linearised about it
+    (columns of other unknowns than `fresh` stay what they were)."""
+    models = [case.at(mine, z, line.track) for line in case.lines]
+    at = {case.effects[i].label: case.effects[i].centre + case.effects[i].sd * z[i] for i in mine}
     column = {u.label: i for i, u in enumerate(case.unknowns)}
     fresh = [u for u in fresh if u.owner != ROUGH]  # what is known roughly does not change with what is asked
     place = [column[u.label] for u in fresh]
     lines = []
-    for line in case.lines:
+    for line, model in zip(case.lines, models, strict=True):
         here, _ = model.without_inputs(line.track.missing())
         new = linearise(line.shown, here, fresh, case.catalogue, at)
         A, R = line.A.copy(), line.R.copy()
@@ -283,7 +284,7 @@ def about(
         moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
         turns = line.turns | {place[j]: turn for j, turn in new.turns.items()}
         lines.append(replace(new, A=A, R=R, turns=turns, doubted=moved, slack=line.slack, busy=line.busy))
-    return model, lines
+    return models, lines
 
 
 def standing(case: Case, found: Found, fresh: Sequence[Unknown] = ()) -> tuple[list[Linear], np.ndarray]:

@@ -7,6 +7,8 @@ log evidence, for changes of 3 to 4 % of it; of true ones two thirds and more ch
 what it is, a steady one. It stays in the weighing all the same: eddies that the voyages do show, taken from
 every hypothesis, are put down to a cause."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from twin.physics.effect import Flow
@@ -23,14 +25,18 @@ def steady(case: Case, found: Found) -> bool:
     """Whether a hypothesis holds a stream that may change, and that stays what it is but for eddies: it is
     the simpler effect that it `holds`."""
     chosen = found.hypothesis.effects
-    streams = [
-        e for e in found.model.effects if isinstance(e, Flow) and e.holds and type(e).__name__ in chosen
+    of_voyages = [
+        [e for e in found.on(i).effects if isinstance(e, Flow) and e.holds and type(e).__name__ in chosen]
+        for i in range(len(case.tracks))
     ]
-    return any(changes(stream, found.model, case.tracks) < EDDIES for stream in streams)
+    return any(changes(each, found.model, case.tracks) < EDDIES for each in zip(*of_voyages, strict=True))
 
 
-def changes(stream: Flow, model: Model, tracks: tuple[Track, ...]) -> float:
-    """What of a stream is not its mean over these voyages, as a share of all of it."""
-    north_up = (stream.water(Situation(t=t.t, psi=np.zeros(len(t))), model.ship) for t in tracks)
-    velocity = np.concatenate([np.column_stack([w.u, w.v]) for w in north_up])
-    return float(np.linalg.norm(velocity - velocity.mean(0))) / max(float(np.linalg.norm(velocity)), 1e-12)
+def changes(streams: Sequence[Flow], model: Model, tracks: Sequence[Track]) -> float:
+    """What of the streams of these voyages is not each one's mean, as a share of all of it."""
+    velocities = []
+    for stream, t in zip(streams, tracks, strict=True):
+        w = stream.water(Situation(t=t.t, psi=np.zeros(len(t))), model.ship)
+        velocities.append(np.column_stack([w.u, w.v]))
+    moved = np.concatenate([v - v.mean(0) for v in velocities])
+    return float(np.linalg.norm(moved)) / max(float(np.linalg.norm(np.concatenate(velocities))), 1e-12)

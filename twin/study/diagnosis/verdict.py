@@ -164,7 +164,7 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
             low, high = value - 1.96 * sd, value + 1.96 * sd
             out.append(
                 {
-                    "name": u.name,
+                    "name": u.told,
                     "value": float(np.clip(value, u.lo, u.hi)),
                     "low95": float(np.clip(low, u.lo, u.hi)),
                     "high95": float(np.clip(high, u.lo, u.hi)),
@@ -184,12 +184,13 @@ def _at_end(u: Unknown, value: float) -> bool:
     )
 
 
-def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
+def typical_force(case: Case, found: Found, name: str) -> dict[str, float]:
     """Root mean square of the force by which the model changes when this effect is taken out, or put back to
     what it was [N, N, N m]."""
-    bare = without(model, case.model, name)
     total, count = np.zeros(3), 0
-    for track in case.tracks:
+    for i, track in enumerate(case.tracks):
+        model = found.on(i)
+        bare = without(model, case.model, name)
         a, b = (respond(track, m.without_inputs(track.missing())[0])[0] for m in (model, bare))
         u, v, r = (a - b).T
         force = np.column_stack(core.force_for(u, v, r, model.c))

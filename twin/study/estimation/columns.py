@@ -35,11 +35,26 @@ class Unknown:
     # other effects whose number of this name it is, too; of the core: whole names of numbers that it also is
     also: tuple[str, ...] = ()
     varies: float = 0.0  # standard deviation between healthy voyages of one ship, in `sd`
+    voyage: str | None = None  # the track's name of the only voyage on which it acts; None: on all
 
     @property
     def label(self) -> str:
         """Owner and name, as in core.N_r."""
+        return f"{self.owner}.{self.told}"
+
+    @property
+    def shared(self) -> str:
+        """Its label as that of a number which all voyages have alike."""
         return f"{self.owner}.{self.name}"
+
+    @property
+    def told(self) -> str:
+        """Its name; of a number that one voyage has for itself, with that voyage."""
+        return self.name if self.voyage is None else f"{self.name} of {self.voyage}"
+
+    def acts_on(self, track: Track) -> bool:
+        """Whether it does anything on this voyage."""
+        return self.voyage in (None, track.name)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -193,6 +208,8 @@ def columns(
             continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
+        if not unknown.acts_on(track):
+            continue
         here = (at or {}).get(unknown.label)
         fault = unknown.owner != "core" and catalogue[unknown.owner].kind == "SensorFault"
         step = _step(unknown, here, fault)
@@ -242,7 +259,7 @@ def beside(
 ) -> tuple[Model, float] | None:
     """The model with a little more of a number, and how much more; None if that moves nothing on this
     track."""
-    if unknown.owner in NO_MODEL:
+    if unknown.owner in NO_MODEL or not unknown.acts_on(track):
         return None
     if unknown.owner != "core" and (
         catalogue[unknown.owner].kind == "SensorFault"
