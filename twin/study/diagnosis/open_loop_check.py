@@ -215,7 +215,10 @@ def held_out_error(case: Case, found: Found) -> float:
     normal = innovate(lines, case.scenarios([found.hypothesis.scenario], found.doubt), MOST_SEGMENTS)[0]
     segments = Counter(case.tracks[i].name for i, *_ in normal.where)
     lasts = np.array(
-        ["t" not in case.catalogue[u.owner].needs and segments.get(u.voyage or "", 2) > 1 for u in case.effects]
+        [
+            "t" not in case.catalogue[u.owner].needs and segments.get(u.voyage or "", 2) > 1
+            for u in case.effects
+        ]
     )
     half = np.arange(len(normal.where)) % 2
     total, count = 0.0, 0
