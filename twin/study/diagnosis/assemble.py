@@ -94,7 +94,7 @@ def of_tracks(
         else _of_calibration(model, nuisance)
     )
     daily = dict(before.known.daily) | of_known_weather(model, catalogue)
-    daily |= {u.label: daily[u.shared] for u in effects if u.shared in daily}
+    daily |= {u.label: daily[key] for u in effects if (key := f"{u.owner}.{u.name}") in daily}
     known = replace(before.known.beside(rough), daily=daily)
     progress("linearising the ship and its instruments along the tracks")
     case = Case(

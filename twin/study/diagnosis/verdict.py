@@ -164,7 +164,7 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
             low, high = value - 1.96 * sd, value + 1.96 * sd
             out.append(
                 {
-                    "name": u.told,
+                    "name": u.full_name,
                     "value": float(np.clip(value, u.lo, u.hi)),
                     "low95": float(np.clip(low, u.lo, u.hi)),
                     "high95": float(np.clip(high, u.lo, u.hi)),

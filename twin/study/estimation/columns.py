@@ -40,15 +40,10 @@ class Unknown:
     @property
     def label(self) -> str:
         """Owner and name, as in core.N_r."""
-        return f"{self.owner}.{self.told}"
+        return f"{self.owner}.{self.full_name}"
 
     @property
-    def shared(self) -> str:
-        """Its label as that of a number which all voyages have alike."""
-        return f"{self.owner}.{self.name}"
-
-    @property
-    def told(self) -> str:
+    def full_name(self) -> str:
         """Its name; of a number that one voyage has for itself, with that voyage."""
         return self.name if self.voyage is None else f"{self.name} of {self.voyage}"
 

@@ -218,7 +218,7 @@ def _numbers(case: Case, found: Found) -> list[Number]:
         said = {str(p["name"]): p for p in parameters(case, told, name)}
         for i, u in enumerate(case.effects):
             if u.owner == name:
-                sd, p = u.sd * float(np.sqrt(told.covariance[i, i])), said.get(u.told)
+                sd, p = u.sd * float(np.sqrt(told.covariance[i, i])), said.get(u.full_name)
                 value = in_file(u.centre + u.sd * float(found.posterior.z[i]), u.lo, u.hi)
                 low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
                 if p:
@@ -227,7 +227,7 @@ def _numbers(case: Case, found: Found) -> list[Number]:
                 out.append(
                     Number(
                         name,
-                        u.told,
+                        u.full_name,
                         u.unit,
                         value,
                         sd,
