@@ -95,13 +95,13 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
     if c["together_with"]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
-    width = max((len(p["name"]) for p in c["parameters"]), default=0)
+    width = max([12, *(len(p["name"]) for p in c["parameters"])])
     for p in map(readable, c["parameters"]):
         file = f"   (ship file: {as_given(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
         end = "   (at the end of its box)" if p["at_box_end"] else ""
         lines.append(
-            f"          {p['name']:<{max(width, 12)}} {num(p['value'], 4):>11} {p['unit']:<5} 95 %: {num(p['low95'], 4)} "
-            f"to {num(p['high95'], 4)}{file}{end}"
+            f"          {p['name']:<{width}} {num(p['value'], 4):>11} {p['unit']:<5} "
+            f"95 %: {num(p['low95'], 4)} to {num(p['high95'], 4)}{file}{end}"
         )
     force = c["typical_force"]
     if say.force(force):
