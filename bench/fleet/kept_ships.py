@@ -29,9 +29,11 @@ def of_families(folders: Sequence[Path]) -> list[Path]:
 
 
 def answers(folder: Path) -> list[dict[str, Any]]:
-    """The answers of a folder, a voyage each."""
+    """The answers of a folder, a voyage each. DataError: there are none."""
     paths = [folder / ROWS, *sorted((folder / "parts").glob("*.jsonl"))]
     rows = {row["key"]: row for path in paths if path.exists() for row in read(path)}
+    if not rows:
+        raise DataError(f"{folder}: no answers in it. Make them: python -m bench.fleet run {folder}")
     return [row for row in rows.values() if "missing" in row]
 
 

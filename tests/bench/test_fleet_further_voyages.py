@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from bench.fleet.addition_proof import table
+from bench.fleet.kept_ships import answers
 from bench.fleet.plausibility import build
 from bench.fleet.several_voyages import table as table_together
 from bench.fleet.voyage_plan import FleetCase, changed, sailed_again
+from twin.errors import DataError
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +66,8 @@ def test_answers_about_more_voyages_stand_beside_those_about_one():
     said = table_together(rows)
     assert said[2].startswith("| single cause, gains | 0 of 1") and said[2].count("1 of 1") == 1
     assert said[-1] == "Could not be asked: 1 of 2."
+
+
+def test_a_folder_without_answers_says_how_they_are_made(tmp_path):
+    with pytest.raises(DataError, match="python -m bench.fleet run"):
+        answers(tmp_path)
