@@ -69,5 +69,5 @@ def test_answers_about_more_voyages_stand_beside_those_about_one():
 
 
 def test_a_folder_without_answers_says_how_they_are_made(tmp_path):
-    with pytest.raises(DataError, match="python -m bench.fleet run"):
+    with pytest.raises(DataError, match="no answers in it"):
         answers(tmp_path)
