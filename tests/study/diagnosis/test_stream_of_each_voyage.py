@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from twin.errors import DataError
 from twin.physics.effects.current import Current
 from twin.physics.effects.rudder_offset import RudderOffset
 from twin.study.diagnosis.assemble import assemble
@@ -58,3 +59,10 @@ def test_a_days_stream_moves_nothing_on_another_day(sailed, kvlcc2):
 def test_a_voyage_by_itself_keeps_the_plain_names(sailed, kvlcc2):
     case = assemble(sailed()[:1], kvlcc2)
     assert [u.label for u in case.effects if u.owner == "Current"] == ["Current.north", "Current.east"]
+
+
+def test_a_voyage_that_is_given_twice_is_refused(sailed, kvlcc2):
+    first = sailed()[0]
+    copied = first.with_rows(first.time_s.copy(), {k: x.copy() for k, x in first.columns.items()})
+    with pytest.raises(DataError, match="Give each voyage once"):
+        assemble([first, copied], kvlcc2)

@@ -55,8 +55,21 @@ def assemble(
     """Everything `search` needs; DataError when the voyages cannot be used at all."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")
+    _refuse_twice(voyages)
     progress("smoothing tracks")
     return of_tracks([swung(track(v, ship), Model.of(ship)) for v in voyages], ship, references, progress)
+
+
+def _refuse_twice(voyages: Sequence[Voyage]) -> None:
+    """DataError where a voyage was given twice: it would count as twice as much evidence."""
+    for i, one in enumerate(voyages):
+        for other in voyages[:i]:
+            if one is other or (
+                np.array_equal(one.time_s, other.time_s)
+                and one.columns.keys() == other.columns.keys()
+                and all(np.array_equal(x, other.columns[k], equal_nan=True) for k, x in one.columns.items())
+            ):
+                raise DataError(f"{one.name}: is the same voyage as {other.name}. Give each voyage once.")
 
 
 def of_tracks(
