@@ -37,6 +37,7 @@ from twin.study.reference.nuisance import (
     usual_unknowns,
 )
 from twin.study.reference.reading import read_lines
+from twin.study.reference.sailed import samples_hash
 from twin.study.reference.seaway import swung
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.reference.weather_baseline import as_usual, strengths
@@ -62,14 +63,12 @@ def assemble(
 
 def _refuse_twice(voyages: Sequence[Voyage]) -> None:
     """DataError where a voyage was given twice: it would count as twice as much evidence."""
-    for i, one in enumerate(voyages):
-        for other in voyages[:i]:
-            if one is other or (
-                np.array_equal(one.time_s, other.time_s)
-                and one.columns.keys() == other.columns.keys()
-                and all(np.array_equal(x, other.columns[k], equal_nan=True) for k, x in one.columns.items())
-            ):
-                raise DataError(f"{one.name}: is the same voyage as {other.name}. Give each voyage once.")
+    known: dict[str, str] = {}
+    for one in voyages if len(voyages) > 1 else ():
+        samples = samples_hash(one)
+        if samples in known:
+            raise DataError(f"{one.name}: is the same voyage as {known[samples]}. Give each voyage once.")
+        known[samples] = one.name
 
 
 def of_tracks(
