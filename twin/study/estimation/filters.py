@@ -22,6 +22,7 @@ SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)
 ERROR = slice(-2, None)  # behind all others, where a receiver errs: north, east
 HEADING = 2
 GROUND = slice(3, 5)  # readings of velocity over ground
+MANY = 12  # triangles, from which to invert them in blocks is faster
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 
@@ -80,6 +81,7 @@ class Filters:
         self.stretches, self.noise, self.C = stretches, noise, C
         self.X = np.zeros((*C.shape[:3], stretches.shown.shape[-1]), LIGHT)
         self.H, self.unread = stretches.H.astype(LIGHT), np.where(stretches.here[:, None], noise.reading, 1.0)
+        self.read = [_which(row) for row in stretches.here.any(-1)]
         self.turned = 1 + np.array(list(stretches.turns), int)
         if stretches.turns:  # of all columns at once
             self.turns = np.concatenate(list(stretches.turns.values()), axis=-2)
@@ -90,14 +92,13 @@ class Filters:
             noise.error,
         )
 
-    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray | slice]:
         """By the readings of step k; gives the innovations with their tangents (W, R, K, 1 + P), in
         standard deviations, the diagonal of the root of their covariance (W, R, K), and which R of the
-        segments had a reading (index); the others stay as they are. RunsAway where their covariance is
-        none."""
-        some = np.flatnonzero(self.stretches.here[k].any(-1))
-        if some.size == self.X.shape[1]:
-            return *self._corrected(k, slice(None), self.X, self.C), some
+        segments had a reading; the others stay as they are. RunsAway where their covariance is none."""
+        some = self.read[k]
+        if isinstance(some, slice):
+            return *self._corrected(k, some, self.X, self.C), some
         X, C = self.X[:, some], self.C[:, some]
         read = self._corrected(k, some, X, C) if some.size else (X[..., :0, :], C[..., :0, 0])
         self.X[:, some], self.C[:, some] = X, C
@@ -189,10 +190,17 @@ class _On:
         return np.concatenate(parts, axis=-2) if len(parts) > 1 else parts[0]
 
 
+def _which(there: np.ndarray) -> np.ndarray | slice:
+    """The places where `there` (S,) holds: all of them as a slice, which copies nothing."""
+    return slice(None) if there.all() else np.flatnonzero(there)
+
+
 def lower_inverse(L: np.ndarray) -> np.ndarray:
     """The inverses (..., n, n) of lower triangles `L` (..., n, n), in units of one over theirs: blocks twice
-    as large each time, of all at once. A third of what a general inverse takes for some hundred of them.
-    Source: Golub & Van Loan (2013) Matrix computations, sec. 3.1."""
+    as large each time, of all at once. A third of what a general inverse takes for some hundred of them; of a
+    few, that one takes a third. Source: Golub & Van Loan (2013) Matrix computations, sec. 3.1."""
+    if L.size < MANY * L.shape[-1] ** 2:
+        return np.linalg.inv(L)
     n, out = L.shape[-1], np.zeros_like(L)
     one = _diagonal(out)
     np.divide(1.0, _diagonal(L), out=one)

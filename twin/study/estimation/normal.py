@@ -53,26 +53,27 @@ class Sums:
             np.zeros((W, S)),
             np.zeros((W, S, 8)),
         )
-        # of each segment its last steps with readings, of which there are so many
-        self.held, self.count = np.zeros((W, S, FOLD, rows.size, 1 + P), LIGHT), np.zeros(S, int)
+        # the last steps with readings, so many; of a segment without one, nothing
+        self.held, self.count = np.zeros((W, S, FOLD, rows.size, 1 + P), LIGHT), 0
+        self.roots = np.ones((W, S, FOLD, rows.size))
         self.rows = rows
 
-    def add(self, white: np.ndarray, root: np.ndarray, some: np.ndarray) -> None:
+    def add(self, white: np.ndarray, root: np.ndarray, some: np.ndarray | slice) -> None:
         """One step of some segments (R,): innovations with their tangents (W, R, K, 1 + P) in units of their
         standard deviations, and the diagonal of the root of their covariance (W, R, K)."""
-        if not some.size:
+        if not white.size:
             return
-        self.held[:, some, self.count[some]] = white
-        self.logdet[:, some] += 2.0 * np.log(root).sum(-1)
-        self.count[some] += 1
-        if self.count.max() == FOLD:
+        self.held[:, some, self.count], self.roots[:, some, self.count] = white, root
+        self.count += 1
+        if self.count == FOLD:
             self._fold()
 
     def _fold(self) -> None:
         white = self.held.reshape(*self.logdet.shape, -1, self.held.shape[-1])
         self.M += white.swapaxes(-1, -2) @ white
+        self.logdet += 2.0 * np.log(self.roots).sum((2, 3))
         self.energy[..., self.rows] += np.square(self.held[..., 0]).sum(2)
-        self.held[...], self.count[...] = 0.0, 0
+        self.held[...], self.roots[...], self.count = 0.0, 1.0, 0
 
     def normals(self, here: np.ndarray, where: tuple[tuple[int, int, int], ...]) -> list[Normal]:
         """One for each noise model; `here` (T, S, K): which readings there were. In units of the unknowns."""

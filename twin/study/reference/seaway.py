@@ -17,7 +17,7 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
-from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate_each
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
@@ -80,12 +80,13 @@ def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> 
         np.array([u.sd for u in unknowns]),
     )
 
-    def likely(line: Linear) -> float:
-        return max(evidence(n, sd) for n in innovate([line], [noise_model.scaled(white=k) for k in WHITES]))
+    def likely(*lines: Linear) -> list[float]:
+        each = innovate_each([[line] for line in lines], [noise_model.scaled(white=k) for k in WHITES])
+        return [max(evidence(n, sd) for n in normals) for normals in each]
 
-    as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
-    best = max(as_strong, key=lambda k: as_strong[k])
-    return _times(rough, BEYOND * best), as_strong[best], likely(lines[0])
+    as_strong = likely(*(replace(lines[1], track=_times(lines[1].track, k)) for k in STRENGTHS))
+    best = int(np.argmax(as_strong))
+    return _times(rough, BEYOND * STRENGTHS[best]), as_strong[best], likely(lines[0])[0]
 
 
 def _times(track: Track, strength: float) -> Track:
