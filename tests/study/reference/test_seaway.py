@@ -96,7 +96,7 @@ def test_a_model_that_no_filter_can_follow_says_nothing_of_waves(calm, tanker, m
     def lost(*_):
         raise np.linalg.LinAlgError
 
-    monkeypatch.setattr(seaway, "innovate", lost)
+    monkeypatch.setattr(seaway, "innovate_each", lost)
     rough = in_waves(calm)
     assert swung(rough, Model.of(tanker)) is rough
 

@@ -81,7 +81,7 @@ class Filters:
         self.stretches, self.noise, self.C = stretches, noise, C
         self.X = np.zeros((*C.shape[:3], stretches.shown.shape[-1]), LIGHT)
         self.H, self.unread = stretches.H.astype(LIGHT), np.where(stretches.here[:, None], noise.reading, 1.0)
-        self.read = [_which(row) for row in stretches.here.any(-1)]
+        self.read = [_which(there.any(-1)) for there in stretches.here]
         self.turned = 1 + np.array(list(stretches.turns), int)
         if stretches.turns:  # of all columns at once
             self.turns = np.concatenate(list(stretches.turns.values()), axis=-2)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, cho_solve_banded, cholesky_banded
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, vstack
 
 RIDGE = 1e-13  # of its own diagonal: what a state gets of which too little is known for the arithmetic
 
@@ -49,18 +49,17 @@ class ArrowReduced:
 def reduce(blocks: Sequence[Block], sd: dict[str, float], fast: int) -> ArrowReduced:
     """Normal equations of all blocks, each with its scatter, and the states (`fast` of them in a band) taken
     out of them."""
-    S, P = blocks[0].J.shape[1], blocks[0].G.shape[1]
-    H, cross, g_s = csr_array((S, S)), np.zeros((S, P)), np.zeros(S)
-    H_pp, g_p = np.zeros((P, P)), np.zeros(P)
-    for b in blocks:
-        w = b.weight / sd[b.name] ** 2
-        scaled = b.J.multiply(w[:, None]).tocsr()
-        H = H + scaled.T @ b.J
-        cross += scaled.T @ b.G
-        g_s += scaled.T @ b.r
-        H_pp += b.G.T @ (w[:, None] * b.G)
-        g_p += b.G.T @ (w * b.r)
-    solve, log_det = _solver(H.tocsr(), fast)
+    J, G, P = (
+        vstack([b.J for b in blocks], "csr"),
+        np.concatenate([b.G for b in blocks]),
+        blocks[0].G.shape[1],
+    )
+    w = np.concatenate([b.weight / sd[b.name] ** 2 for b in blocks])
+    scaled, r = J.copy(), np.concatenate([b.r for b in blocks])
+    scaled.data *= np.repeat(w, np.diff(J.indptr))
+    cross, g_s = scaled.T @ G, scaled.T @ r
+    H_pp, g_p = G.T @ (w[:, None] * G), G.T @ (w * r)
+    solve, log_det = _solver((scaled.T @ J).tocsr(), fast)
     solved = solve(np.column_stack([cross, g_s]))
     inner, mean = solved[:, :P], solved[:, P]
     A = H_pp - cross.T @ inner

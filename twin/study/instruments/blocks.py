@@ -75,7 +75,7 @@ def _block(
     sense: Callable[[Problem, Theta, Rows | None], np.ndarray],
     y: np.ndarray,
 ) -> Block:
-    rows = Rows(y.size)
+    rows = Rows()
     here = sense(p, theta, rows)
     r = y - here
     G = np.zeros((y.size, len(UNKNOWNS)))
@@ -96,33 +96,8 @@ def _with(theta: Theta, name: str, step: float) -> Theta:
 
 
 def _priors(p: Problem) -> list[Block]:
-    """Third slopes of the path, steps of stream and wind; the stream's walk is nothing in the middle of the
-    voyage."""
-    out = []
-    third = np.array([-1.0, 3.0, -3.0, 1.0]) / p.path.h**3
-    out.append(_smooth(p, "jerk", p.at[0][:, :2], third))
-    out.append(_smooth(p, "twist", p.at[0][:, 2:], third))
-    out.append(_smooth(p, "stream", p.at[1], np.array([-1.0, 1.0])))
-    middle = p.at[1][p.stream.size // 2]
-    rows = Rows(2)
-    for j in (0, 1):
-        rows.add(j, middle[j : j + 1], (np.zeros(1, int), np.ones((1, 1))))
-    out.append(Block("tie", -p.x[middle], rows.matrix(p.size), np.zeros((2, len(UNKNOWNS))), np.ones(2)))
-    if p.wind is not None:
-        out.append(_smooth(p, "air", p.at[2], np.array([-1.0, 1.0])))
-    return out
-
-
-def _smooth(p: Problem, name: str, columns: np.ndarray, difference: np.ndarray) -> Block:
-    n = columns.shape[0] - difference.size + 1
-    rows, r = Rows(n * columns.shape[1]), []
-    for j, column in enumerate(columns.T):
-        rows.add(j * n, column, (np.arange(n), np.broadcast_to(difference, (n, difference.size))))
-        r.append(-sum(d * p.x[column[i : i + n]] for i, d in enumerate(difference)))
-    return Block(
-        name,
-        np.concatenate(r),
-        rows.matrix(p.size),
-        np.zeros((n * columns.shape[1], len(UNKNOWNS))),
-        np.ones(n * columns.shape[1]),
-    )
+    """What the states are held to: each prior's rows are nothing."""
+    return [
+        Block(name, -(J @ p.x), J, np.zeros((J.shape[0], len(UNKNOWNS))), np.ones(J.shape[0]))
+        for name, J in p.priors.items()
+    ]

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_array
+from scipy.sparse import csr_array
 
 from twin.study.instruments.instrument_samples import PER_MOTION, Readings, ReadingSamples
 from twin.study.instruments.spline import Spline, Weights
@@ -42,26 +42,43 @@ KNOTS = 16.0  # of the path in the time in which the rate of turn changes
 class Rows:
     """Rows of a sparse matrix, gathered piece by piece."""
 
-    def __init__(self, n: int) -> None:
-        self.n = n
-        self.row: list[np.ndarray] = []
-        self.col: list[np.ndarray] = []
-        self.data: list[np.ndarray] = []
+    def __init__(self) -> None:
+        # first row -> columns (n, m) and what stands there (n, m), of each piece that begins there
+        self.pieces: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
 
     def add(self, first_row: int, columns: np.ndarray, w: Weights, factor: np.ndarray | float = 1.0) -> None:
-        """From `first_row` on, n rows: weights w, (n,) and (n, m), of the coefficients whose columns (K,)
-        these are, times a factor for each row (n,) or one for all."""
+        """From `first_row` on, n rows, as many as any other piece that begins there: weights w, (n,) and
+        (n, m), of the coefficients whose columns (K,) these are, times a factor for each row (n,) or one for
+        all."""
         first, share = w
         n, m = share.shape
-        self.row.append(np.repeat(np.arange(first_row, first_row + n), m))
-        self.col.append(columns[first[:, None] + np.arange(m)].ravel())
-        self.data.append((share * np.broadcast_to(np.asarray(factor, float), n)[:, None]).ravel())
+        self.pieces.setdefault(first_row, []).append(
+            (
+                columns[first[:, None] + np.arange(m)],
+                share * np.broadcast_to(np.asarray(factor, float), n)[:, None],
+            )
+        )
 
     def matrix(self, size: int) -> Any:
         """All that was added, as a sparse matrix (N, S) of S = `size` columns, by rows; what fell on one
         place adds up."""
-        at = (np.concatenate(self.row), np.concatenate(self.col))
-        return coo_array((np.concatenate(self.data), at), shape=(self.n, size)).tocsr()
+        beside = [tuple(map(np.hstack, zip(*here, strict=True))) for _, here in sorted(self.pieces.items())]
+        lengths = np.concatenate([np.full(*column.shape) for column, _ in beside])
+        column, value = (
+            np.concatenate([part.ravel() for part in parts]) for parts in zip(*beside, strict=True)
+        )
+        out = csr_array((value, column, np.r_[0, lengths.cumsum()]), shape=(lengths.size, size))
+        out.sum_duplicates()
+        return out
+
+
+def _differences(columns: np.ndarray, weights: np.ndarray) -> Rows:
+    """These weights (m,) times each m coefficients in a row, of every direction: `columns` (K, d)."""
+    n = columns.shape[0] - weights.size + 1
+    rows, each = Rows(), (np.arange(n), np.broadcast_to(weights, (n, weights.size)))
+    for j, column in enumerate(columns.T):
+        rows.add(j * n, column, each)
+    return rows
 
 
 @dataclass
@@ -79,6 +96,8 @@ class Problem:
     memory: float = field(init=False, default=0.5)
     beside: np.ndarray = field(init=False, repr=False)  # and that itself, as last worked out [m/s]
 
+    # of each prior: what a unit of each state (S) does to its rows, wherever the states are
+    priors: dict[str, Any] = field(init=False, repr=False)
     # the path at the times of the readings, while the states stay where they are (here.py)
     met: dict[Any, Any] | None = field(init=False, default=None, repr=False)
 
@@ -100,6 +119,7 @@ class Problem:
         self.wind = Spline.over(start, end, max(WIND_S, read.time), 1) if "wind" in self.by else None
         self.grid = np.arange(start, end, max(read.time / 3.0, 2.0 * h, 0.3 * self.length / read.speed))
         self._columns()
+        self.priors = self._priors()
         self._begin()
 
     def _velocity(self, read: Readings) -> ReadingSamples:
@@ -121,6 +141,20 @@ class Problem:
             for part, (_, d) in zip(np.split(np.arange(ends[-1]), ends[:-1]), grids, strict=True)
         ]
         self.size, self.fast = int(ends[-1]), int(ends[0])
+
+    def _priors(self) -> dict[str, Any]:
+        """Third slopes of the path, steps of stream and wind; the stream does not walk in the middle of the
+        voyage."""
+        third, step = np.array([-1.0, 3.0, -3.0, 1.0]) / self.path.h**3, np.array([-1.0, 1.0])
+        rows = {
+            "jerk": _differences(self.at[0][:, :2], third),
+            "twist": _differences(self.at[0][:, 2:], third),
+            "stream": _differences(self.at[1], step),
+            "tie": _differences(self.at[1][self.stream.size // 2][None], np.ones(1)),
+        }
+        if self.wind is not None:
+            rows["air"] = _differences(self.at[2], step)
+        return {name: own.matrix(self.size) for name, own in rows.items()}
 
     def _begin(self) -> None:
         """States near the readings, and a first guess of every scatter."""
