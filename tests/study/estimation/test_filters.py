@@ -26,7 +26,8 @@ def unstable(growth: float, read_every: int, steps: int = STEPS) -> Filters:
     told = Stretches(
         F=np.broadcast_to(F, (steps, 1, STATES, STATES)).copy(), H=H, here=here,
         shown=np.zeros((steps, 1, 8, 1)), pushed=np.zeros((steps, 1, 6, 1), np.float32),
-        spread=np.zeros((steps, 1, 6, 3), np.float32), turns={},
+        spread=np.zeros((steps, 1, 6, 3), np.float32),
+        turned=np.zeros(0, int), turns=np.zeros((steps, 1, 0, 8), np.float32),
     )  # fmt: skip
     noise = NoiseVariances(np.full((steps, 1, 1, 8), 1e-5), np.full((steps, 1, 1, STATES), 1e-6))
     return Filters(told, noise, np.eye(STATES)[None, None] * 0.1)
@@ -68,16 +69,16 @@ def test_a_model_that_runs_away_between_two_readings_is_refused_in_one_line():
 def test_of_faults_of_several_instruments_each_column_is_as_if_it_were_alone():
     draw, P = np.random.default_rng(SEED), 4
     turns = {j: draw.standard_normal((1, 2, 8, 8)).astype(np.float32) for j in (0, 3, 2)}
-    shown, told = draw.standard_normal((1, 2, 8, 1 + P)).astype(np.float32), unstable(1.0, 1, 1).stretches
+    shown, one = draw.standard_normal((1, 2, 8, 1 + P)).astype(np.float32), unstable(1.0, 1, 1).stretches
 
     def white(some):
         two = {
-            name: np.repeat(getattr(told, name), 2, axis=1) for name in ("F", "H", "here", "pushed", "spread")
+            name: np.repeat(getattr(one, name), 2, axis=1) for name in ("F", "H", "here", "pushed", "spread")
         }
         noise = NoiseVariances(np.full((1, 1, 2, 8), 1e-2), np.zeros((1, 1, 2, STATES)))
-        filters = Filters(
-            Stretches(shown=shown, turns=some, **two), noise, np.tile(np.eye(STATES), (1, 2, 1, 1))
-        )
+        turns = np.concatenate([np.zeros((1, 2, 0, 8), np.float32), *some.values()], axis=2)
+        told = Stretches(shown=shown, turned=np.array(list(some), int), turns=turns, **two)
+        filters = Filters(told, noise, np.tile(np.eye(STATES), (1, 2, 1, 1)))
         filters.X[...] = 0.1
         return filters.correct(0)[0]
 

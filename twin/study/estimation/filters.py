@@ -41,7 +41,8 @@ class Stretches:
     # (T, S, 6, 1 + P) what a step adds to the motion: the model's defect, and what one of each unknown pushes
     pushed: np.ndarray
     spread: np.ndarray  # (T, S, 6, 3) accelerations to what they add to the motion in a step
-    turns: dict[int, np.ndarray]  # column -> (T, S, K, K)
+    turned: np.ndarray  # (C,) columns of faulty instruments that turn what is read
+    turns: np.ndarray  # (T, S, C K, K) by how much
     bends: np.ndarray | None = None  # (T, S, 3, 6, P)
     swing: np.ndarray | None = None  # (T, S, 12, 12) what takes the waves a step on
     # (T, S, 2, 2) from north and east to the readings of velocity over ground, where a receiver errs
@@ -82,9 +83,7 @@ class Filters:
         self.X = np.zeros((*C.shape[:3], stretches.shown.shape[-1]), LIGHT)
         self.H, self.unread = stretches.H.astype(LIGHT), np.where(stretches.here[:, None], noise.reading, 1.0)
         self.read = [_which(there.any(-1)) for there in stretches.here]
-        self.turned = 1 + np.array(list(stretches.turns), int)
-        if stretches.turns:  # of all columns at once
-            self.turns = np.concatenate(list(stretches.turns.values()), axis=-2)
+        self.turned = 1 + stretches.turned
         self.on = _On(stretches.F, stretches.swing, noise.error)
         self.light = _On(
             stretches.F.astype(LIGHT),
@@ -114,7 +113,7 @@ class Filters:
         if erring is not None:
             E[..., GROUND, :] -= erring.astype(LIGHT) @ X[..., ERROR, :]
         if self.turned.size:
-            more = self.turns[k][some] @ (E[..., :1] - shown[..., :1])
+            more = stretches.turns[k][some] @ (E[..., :1] - shown[..., :1])
             E[..., self.turned] += more.reshape(*E.shape[:2], -1, E.shape[2]).swapaxes(-1, -2)
         HC = H @ C[..., SHIP, :]
         if erring is not None:

@@ -44,7 +44,7 @@ from twin.study.track.motion_channels import READINGS
 from twin.study.track.segments import segments
 from twin.study.track.track import Track
 
-ABREAST = 64  # segments, of which more side by side take as much longer as they are more
+ABREAST = 24  # segments, of which more side by side take as much longer as they are more
 
 
 @dataclass(frozen=True)
@@ -147,6 +147,8 @@ def _stretches(lines: Sequence[Linear], where: Where, rows: np.ndarray, erring: 
     pushed = np.empty((*defect.shape, shown.shape[-1]), LIGHT)
     pushed[..., 0] = defect
     np.matmul(spread, abreast([x.A for x in lines], where), out=pushed[..., 1:])
+    turned, turns = _turns(lines, where, rows)
+    turns *= here[:, :, None, :, None]
     return Stretches(
         F=abreast([x.F for x in lines], where),
         H=abreast([x.H[:, rows] for x in lines], where) * here[..., None],
@@ -154,7 +156,8 @@ def _stretches(lines: Sequence[Linear], where: Where, rows: np.ndarray, erring: 
         shown=shown,
         pushed=pushed,
         spread=spread,
-        turns={j: turn * here[..., None] for j, turn in _turns(lines, where, rows).items()},
+        turned=turned,
+        turns=turns.reshape(*here.shape[:2], -1, rows.size),
         bends=None
         if lines[0].bends is None
         else abreast([x.bends for x in lines if x.bends is not None], where),
@@ -169,17 +172,17 @@ def _erring(line: Linear) -> np.ndarray:
     return np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], -2)
 
 
-def _turns(lines: Sequence[Linear], where: Where, rows: np.ndarray) -> dict[int, np.ndarray]:
-    """Of every column that any of the tracks has; nothing on one whose instruments lack what is at fault."""
-    some = {j for x in lines for j in x.turns}
-    none, there = np.zeros((1, rows.size, rows.size), np.float32), (slice(None), rows[:, None], rows)
-    return {
-        j: abreast(
-            [x.turns[j][there] if j in x.turns else np.repeat(none, len(x.track), axis=0) for x in lines],
-            where,
-        )
-        for j in some
-    }
+def _turns(lines: Sequence[Linear], where: Where, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(C,) the columns of faulty instruments that any of the tracks has, and (T, S, C, K, K) what they do of
+    each segment; nothing on one whose instruments lack what is at fault."""
+    columns = sorted({j for x in lines for j in x.turns})
+    size = (max(b - a for _, a, b in where), len(where), len(columns), rows.size, rows.size)
+    out = np.zeros(size, LIGHT)
+    for k, (i, a, b) in enumerate(where):
+        for c, j in enumerate(columns):
+            if j in lines[i].turns:
+                out[: b - a, k, c] = lines[i].turns[j][a:b, rows[:, None], rows]
+    return np.array(columns, int), out
 
 
 def _in_waves(lines: Sequence[Linear]) -> bool:
