@@ -43,14 +43,18 @@ def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) 
 
 
 def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
-    """What to sail where the voyages cannot tell, and what to add where a lasting cause was named."""
+    """What to sail where the voyages cannot tell, or more voyages; and what to add where a lasting cause was
+    named."""
     paths, sail = " ".join(voyages), ""
     if result["next_manoeuvre"]:
         sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
     if lasting := result["answer"]["lasting"]:
         add = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
         return f"{sail}; or now: {add}" if sail else add
-    return sail or f"twin compare {paths} --ship {ship} --report compare.html"
+    if sail or result["verdict"] not in ("undecided", "unknown"):
+        return sail or f"twin compare {paths} --ship {ship} --report compare.html"
+    more = f"twin diagnose {paths} ANOTHER-DAY.mcap --ship {ship}"
+    return f"{more} (a voyage of another day and on other courses, asked together with this, tells more)"
 
 
 def add_typed(args: argparse.Namespace) -> str:

@@ -74,7 +74,9 @@ const odds = (x) => (x > -0.01 ? "the likeliest" : x > -1 ? "nearly as likely" :
 function next(a) {
   const d = a.result, names = d.answer?.lasting || [];
   const sail = d.next_manoeuvre ? el("p", null, el("b", null, "Sail next: "), `${d.next_manoeuvre.manoeuvre}. ${d.next_manoeuvre.why}`) : null;
-  return [sail, names.length ? el(".tools", null, el("a.button", { href: address("add", "", { effects: names.join(","), ship: a.job.asked.ship, voyages: a.job.asked.voyages.join(",") }), id: "to-add" }, `Add ${names.join(" and ")} to the model`)) : null];
+  const open = !names.length && ["undecided", "unknown"].includes(d.verdict);
+  const other = open ? el("p.note", null, "A voyage of another day and on other courses, asked together with this, tells more.") : null;
+  return [sail, other, names.length ? el(".tools", null, el("a.button", { href: address("add", "", { effects: names.join(","), ship: a.job.asked.ship, voyages: a.job.asked.voyages.join(",") }), id: "to-add" }, `Add ${names.join(" and ")} to the model`)) : null];
 }
 
 function more(d) {
