@@ -81,9 +81,10 @@ class Stabilizer:
         certificate, known = tube.certificate, self._known(observer, open_, tube)
         if not self._inside:
             self._guessed = tuple(a for a in NU if not open_.known(a))
-        within = least((tube.beta, tube.psi), known) if self._inside >= tube.window else known
+        proven = self._inside >= tube.window and tube.rests_on(self._inside_s)
+        within = least((tube.beta, tube.psi), known) if proven else known
         apart = self._apart(observer, measured, tube, dt)
-        left = tube.outside(s, within[0], dt)
+        left = tube.outside(s, within[0], dt, proven)
         self.outside = (
             late
             or doubt
@@ -93,7 +94,7 @@ class Stabilizer:
             or left
         )
         self._count(measured.now_s)
-        if proven := self._inside >= tube.window:
+        if proven := self._inside >= tube.window and tube.rests_on(self._inside_s):
             tube.know(*known)
             if nothing := tube.says_nothing():  # what is known says more
                 tube.reset(*least((tube.beta, tube.psi), known))

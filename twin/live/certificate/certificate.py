@@ -14,6 +14,7 @@ from typing import Any
 from twin.checksum import sha256_hex
 from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.cells import Cells
 from twin.live.certificate.comparison_systems import Matrix, Row
 from twin.live.certificate.gains import best_gain, gains_that_do, suited_gain, usual_gain
 from twin.live.certificate.heading_bound import with_heading
@@ -59,7 +60,7 @@ __all__ = [
     "usual_noise",
 ]
 
-VERSION = 7
+VERSION = 8
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,8 @@ class Certificate(Promise):
             raise ValueError("certificate changed since it was written")
         table = _tuples(told)
         plant = table.pop("plant")
-        ranges = plant.pop("operating")["ranges"]
+        ranges, cells = plant.pop("operating")["ranges"], plant.pop("cells")
+        plant["cells"] = Cells(**cells) if cells else None
         table["plant"] = Plant(**plant, operating=OperatingSet(ranges))
         table["disturbance"] = Disturbance(**table["disturbance"])
         table["step"] = Recursion(**table["step"])
@@ -168,7 +170,9 @@ class Certificate(Promise):
         bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
         noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
         told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
-        return positive and noisy and self.operating.whole and all(told)
+        cells = self.plant.cells
+        whole = self.operating.whole and (cells is None or cells.whole(self.operating.ranges))
+        return positive and noisy and whole and all(told)
 
 
 def certify(
@@ -206,7 +210,8 @@ def certify(
     d = _bound_of(disturbance) or usual_disturbance(model)
     d = replace(d, calm=c3.add(d.calm, saturation))
     numbers = movable(model.effects, model.ship) if adapted else ()
-    plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), c3.row(noise)
+    operating = operating_set or of_ship(model)
+    plant, noise = plant_of(model, operating, h, numbers, inner > 1), c3.row(noise)
     if inner > 1:
         K = FULL_GAIN / h
     elif K is None:

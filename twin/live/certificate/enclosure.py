@@ -83,6 +83,40 @@ def slopes(
 
     They hold as well while effects are switched off for want of an input, and wherever in their boxes
     `numbers` of the effects are."""
+    k = WIDTH + len(numbers)
+    found, boxes = _by_motion(model, ranges, pieces, numbers)
+    total = _with_the_stream(found, ranges, k)
+    lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
+    return Slopes.of(lo, hi, boxes, numbers)
+
+
+def slopes_by_cell(
+    model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()
+) -> tuple[tuple[np.ndarray, ...], np.ndarray, np.ndarray]:
+    """The same in each cell of motions, without a current: the cells' edges (of u, v, r), and lo and hi
+    (3, 5, cells) of nu_dot and of its slopes with (u, v, r, psi). u runs slowest, r fastest."""
+    k = WIDTH + len(numbers)
+    found, _ = _by_motion(model, ranges, pieces, numbers)
+    edges = tuple(_edges(*ranges[name], pieces.get(name, 1)) for name in NU)
+    cells = int(np.prod([len(e) - 1 for e in edges]))
+    rows = [found[k * i + j] for i in range(3) for j in range(WIDTH)]
+    lo, hi = (np.array([np.broadcast_to(of_end(x), cells) for x in rows]) for of_end in (_low, _high))
+    return edges, lo.reshape(3, WIDTH, cells), hi.reshape(3, WIDTH, cells)
+
+
+def _low(x: Any) -> np.ndarray:
+    return np.asarray(of(x).lo)
+
+
+def _high(x: Any) -> np.ndarray:
+    return np.asarray(of(x).hi)
+
+
+def _by_motion(
+    model: Model, ranges: Ranges, pieces: Mapping[str, int], numbers: Sequence[Movable]
+) -> tuple[list[Any], int]:
+    """Rates and slopes (3 k) in each cell of motions, whatever the inputs, without a current; and of how many
+    boxes."""
     model, ranges = _seen_from_the_water(model, ranges)
     model = anywhere(model, numbers)
     k = WIDTH + len(numbers)
@@ -100,9 +134,7 @@ def slopes(
             total = [
                 a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)
             ]
-    total = _with_the_stream(total, ranges, k)
-    lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
-    return Slopes.of(lo, hi, boxes, numbers)
+    return total, boxes
 
 
 def anywhere(model: Model, numbers: Sequence[Movable]) -> Model:

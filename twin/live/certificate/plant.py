@@ -4,10 +4,12 @@ and how it is disturbed.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.cells import Cells, of_slopes
 from twin.live.certificate.comparison_systems import AXES, Matrix, Row
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
@@ -35,6 +37,7 @@ class Plant:
     operating: OperatingSet
     bend: tuple[tuple[float, ...], ...] = ()
     moved: Row = (0.0, 0.0, 0.0)
+    cells: Cells | None = None  # the same, part by part of the set
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""
@@ -56,12 +59,12 @@ class Plant:
         whole = [[float(i == j) + self.h * rows[i][j] + self.bend[i][j] for j in range(4)] for i in range(4)]
         return tuple(tuple(total(whole[i][k] * rows[k][j] for k in range(4)) for j in range(4)) for i in AXES)
 
-    def growth(self) -> Matrix:
+    def growth(self, clipped: bool = True) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may
-        switch damping off.
+        switch damping off. Where nothing is clipped damping counts.
         """
-        size = self.magnitude()
-        return c3.matrix(lambda i, j: max(self.hi[i][i], 0.0) if i == j else size[i][j])
+        size, least = self.magnitude(), 0.0 if clipped else -inf
+        return c3.matrix(lambda i, j: max(self.hi[i][i], least) if i == j else size[i][j])
 
 
 @dataclass(frozen=True)
@@ -94,11 +97,13 @@ class Disturbance:
         return noise + self.motion[3] * H_s
 
 
-def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = ()) -> Plant:
+def plant_of(
+    model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = (), by_cell: bool = False
+) -> Plant:
     """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second
-    for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes.
+    for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes. `by_cell`: part by part of the set as well.
     """
-    from twin.live.certificate.enclosure import anywhere, slopes
+    from twin.live.certificate.enclosure import anywhere, slopes, slopes_by_cell
 
     steep = slopes(model, operating.ranges, numbers=numbers)
     unit = [core.accelerations(*row, anywhere(model, numbers).c) for row in c3.IDENTITY]
@@ -111,6 +116,7 @@ def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[
         h=h,
         operating=operating,
         moved=c3.row(steep.moved),
+        cells=of_slopes(*slopes_by_cell(model, operating.ranges, numbers=numbers)) if by_cell else None,
     )
     return made.at_period(h)
 

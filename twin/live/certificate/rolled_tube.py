@@ -5,16 +5,17 @@ moved), from the moment that no sample of the tick changes; so it holds whatever
 """
 
 from collections import deque
-from math import ceil
+from math import hypot
 from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
 from twin.live.certificate.observer_tube import NONE, NOTHING, UNKNOWN, Three, Tube, halves
 from twin.live.certificate.periods import of_certificate
+from twin.live.certificate.regions import Region, Regions
 from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.observer.operating import NU, outside_in_words
-from twin.live.observer.rollback import KEPT_S, Path, State
+from twin.live.observer.rollback import KEPT_S, Motion, Path, State
 from twin.physics.state import Situation
 
 Four = tuple[float, float, float, float]
@@ -37,8 +38,7 @@ class RolledTube(Tube):
 
     def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
         self.certificate = certificate
-        # what a sample may look back on is inside, before anything is promised
-        self.window = ceil(KEPT_S / certificate.h) + 1
+        self.window = 1  # what the way goes back to is looked at tick by tick
         self.periods = of_certificate(certificate)
         self.oldest_s = KEPT_S
         self.beta = certificate.noise if start is None else start
@@ -53,6 +53,9 @@ class RolledTube(Tube):
         self.distrusted = NONE  # rows of nu of which no sample counts for the time being
         # what samples that did not count moved each row by; 0 where a part of the way was gone again
         self.uncounted: list[float] = [0.0, 0.0, 0.0]
+        cells = certificate.plant.cells
+        self._regions = Regions(certificate, cells) if cells else None
+        self._region: Region | None = None  # in which the ship surely is; None: it may be outside
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
 
@@ -65,9 +68,10 @@ class RolledTube(Tube):
     def carried(self, pulled: Three, turned: float, since_s: float) -> tuple[Three, float]:
         """The bound as it is, for a sample corrects its own time and nothing looks back, if the path began
         no earlier than `since_s`; else one that says nothing."""
-        if self._from_s < since_s:
-            return UNKNOWN
-        return self.beta, self.psi
+        return (self.beta, self.psi) if self.rests_on(since_s) else UNKNOWN
+
+    def rests_on(self, since_s: float) -> bool:
+        return self._from_s >= since_s
 
     def know(self, most: Three, psi: float) -> None:
         """Of this and what the tube says the lesser holds, row by row, and the next way begins at it. A
@@ -109,8 +113,11 @@ class RolledTube(Tube):
         if not nodes:  # a new start
             nodes.append(Node(path.start_s, x, of_state(path.start), x))
         for time_s, motions, pulls, after in path.stretches:
-            for motion in motions:
-                self._left = self._left or self._outside(motion, x)
+            for k, motion in enumerate(motions):
+                if not (k and self._region and self._region.holds(motion, x)):
+                    self._region = self._around(motion, x)
+                if self._region is None:
+                    self._left = self._left or self._outside(motion, x)
                 x = self._on(x)
             before = x
             for state, full, moved in pulls:
@@ -124,13 +131,25 @@ class RolledTube(Tube):
         self.beta, self.psi = x[:3], x[3]
         return self.beta
 
-    def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
+    def outside(
+        self, s: Situation, within: Three | None = None, dt: float = 0.0, on_the_way: bool = True
+    ) -> str | None:
         """What left the set on the way to now, or does now."""
-        return self._left or self.certificate.operating.outside(
-            s, add(within or self.beta, scaled_row(self._length, self.way))
+        within = within or self.beta
+        now: Motion = (s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r))  # type: ignore[assignment, operator]
+        region = self._around(now, (*within, self.psi))
+        return (self._left if on_the_way else None) or self.certificate.operating.outside(
+            s, add(within, scaled_row(self._length, region.way if region else self.way))
         )
 
-    def _outside(self, motion: Three, x: Four) -> str | None:
+    def _around(self, motion: Motion, x: Four) -> Region | None:
+        """The part of the set in which the ship surely is during a step from that motion."""
+        if self._regions is None:
+            return None
+        last = self._region.way if self._region else None
+        return self._regions.around(motion, x, self._force, last)
+
+    def _outside(self, motion: Motion, x: Four) -> str | None:
         """What may be outside as an inner step begins, or within it."""
         for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
             most = b + self._length * w
@@ -140,9 +159,8 @@ class RolledTube(Tube):
 
     def _on(self, x: Four) -> Four:
         u, v, r, psi = x
-        a, b, c, e = [
-            min(m0 * u + m1 * v + m2 * r + m3 * psi + d, NOTHING) for m0, m1, m2, m3, d in self._rows
-        ]
+        rows = self._region.rows if self._region else self._rows
+        a, b, c, e = [min(m0 * u + m1 * v + m2 * r + m3 * psi + d, NOTHING) for m0, m1, m2, m3, d in rows]
         return a, b, c, e
 
     def _pulled(self, x: Four, i: int, full: bool, moved: float) -> Four:
@@ -170,7 +188,7 @@ class RolledTube(Tube):
         self.noise: Three = c.disturbance.noise(c.noise, H_s)
         self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
         self._noise: Four = (*self.noise, self.heading_noise)
-        self.way: Three = way(c.plant, force)
+        self._force, self.way = force, way(c.plant, force)
         d = self._one.pushes(force, self.way[2])
         self._rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))
 
