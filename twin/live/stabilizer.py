@@ -85,15 +85,11 @@ class Stabilizer:
         within = least((tube.beta, tube.psi), known) if proven else known
         apart = self._apart(observer, measured, tube, dt)
         left = tube.outside(s, within[0], dt, proven)
-        self.outside = (
-            late
-            or doubt
-            or apart
-            or _unsure(measured)
-            or (left and open_.unknown(self._guessed, self._heard))
-            or left
-        )
-        self._count(measured.now_s)
+        # only the way to now may have left it
+        again = left is not None and proven and tube.outside(s, open_.bounds[0], dt, False) is None
+        wrong = late or doubt or apart or _unsure(measured)
+        self.outside = wrong or (left and open_.unknown(self._guessed, self._heard)) or left
+        self._count(measured.now_s, again and not wrong)
         if proven := self._inside >= tube.window and tube.rests_on(self._inside_s):
             tube.know(*known)
             if nothing := tube.says_nothing():  # what is known says more
@@ -149,13 +145,14 @@ class Stabilizer:
         carried = tube.carried((pulled["u"], pulled["v"], pulled["r"]), pulled["psi"], self._inside_s)
         return least(open_.bounds, carried)
 
-    def _count(self, now_s: float) -> None:
-        """For how long it has surely been inside; a bound that was contradicted begins anew afterwards."""
+    def _count(self, now_s: float, again: bool) -> None:
+        """For how long it has surely been inside (`again`: from now on); a bound that was contradicted begins
+        anew afterwards."""
         was = self.broken
         self.broken = contradicted(NU, self._watched, now_s) if self.promises else ""
         if self.outside is not None or (was and not self.broken):
             self._inside = 0
-        if self.outside is None:
+        if self.outside is None or again:
             self._inside += 1
         if self._inside == 1:
             self._inside_s = now_s

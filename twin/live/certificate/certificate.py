@@ -171,7 +171,7 @@ class Certificate(Promise):
         noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
         told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
         cells = self.plant.cells
-        whole = self.operating.whole and (cells is None or cells.whole(self.operating.ranges))
+        whole = self.operating.whole and (cells is None or cells.whole(self.operating.reach))
         return positive and noisy and whole and all(told)
 
 

@@ -92,24 +92,18 @@ def slopes(
 
 def slopes_by_cell(
     model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()
-) -> tuple[tuple[np.ndarray, ...], np.ndarray, np.ndarray]:
-    """The same in each cell of motions, without a current: the cells' edges (of u, v, r), and lo and hi
-    (3, 5, cells) of nu_dot and of its slopes with (u, v, r, psi). u runs slowest, r fastest."""
+) -> tuple[tuple[np.ndarray, ...], np.ndarray, np.ndarray, tuple[float, ...]]:
+    """The same in each cell of motions, without a current: the cells' edges (of u, v, r), lo and hi
+    (3, 5, cells) of nu_dot and of its slopes with (u, v, r, psi), and `moved` all over them; r runs
+    fastest."""
     k = WIDTH + len(numbers)
-    found, _ = _by_motion(model, ranges, pieces, numbers)
+    found, boxes = _by_motion(model, ranges, pieces, numbers)
     edges = tuple(_edges(*ranges[name], pieces.get(name, 1)) for name in NU)
     cells = int(np.prod([len(e) - 1 for e in edges]))
-    rows = [found[k * i + j] for i in range(3) for j in range(WIDTH)]
-    lo, hi = (np.array([np.broadcast_to(of_end(x), cells) for x in rows]) for of_end in (_low, _high))
-    return edges, lo.reshape(3, WIDTH, cells), hi.reshape(3, WIDTH, cells)
-
-
-def _low(x: Any) -> np.ndarray:
-    return np.asarray(of(x).lo)
-
-
-def _high(x: Any) -> np.ndarray:
-    return np.asarray(of(x).hi)
+    lo = np.array([np.broadcast_to(of(x).lo, cells) for x in found]).reshape(3, k, cells)
+    hi = np.array([np.broadcast_to(of(x).hi, cells) for x in found]).reshape(3, k, cells)
+    least, most = lo.min(axis=2).ravel().tolist(), hi.max(axis=2).ravel().tolist()
+    return edges, lo[:, :WIDTH], hi[:, :WIDTH], Slopes.of(least, most, boxes, numbers).moved
 
 
 def _by_motion(

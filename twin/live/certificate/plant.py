@@ -9,7 +9,7 @@ from typing import Any
 
 from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
-from twin.live.certificate.cells import Cells, of_slopes
+from twin.live.certificate.cells import IN_CELLS, Cells, of_slopes
 from twin.live.certificate.comparison_systems import AXES, Matrix, Row
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
@@ -101,11 +101,16 @@ def plant_of(
     model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = (), by_cell: bool = False
 ) -> Plant:
     """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second
-    for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes. `by_cell`: part by part of the set as well.
+    for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes.
+    `by_cell`: part by part of the set as well.
     """
-    from twin.live.certificate.enclosure import anywhere, slopes, slopes_by_cell
+    from twin.live.certificate.enclosure import PIECES, anywhere, slopes, slopes_by_cell
 
     steep = slopes(model, operating.ranges, numbers=numbers)
+    cells = None
+    if by_cell:
+        found = slopes_by_cell(model, operating.reach, PIECES | IN_CELLS, numbers)
+        cells = of_slopes(*found[:3], c3.row(found[3]))
     unit = [core.accelerations(*row, anywhere(model, numbers).c) for row in c3.IDENTITY]
     made = Plant(
         lo=c3.matrix(lambda i, j: steep.lo[i][j]),
@@ -116,7 +121,7 @@ def plant_of(
         h=h,
         operating=operating,
         moved=c3.row(steep.moved),
-        cells=of_slopes(*slopes_by_cell(model, operating.ranges, numbers=numbers)) if by_cell else None,
+        cells=cells,
     )
     return made.at_period(h)
 

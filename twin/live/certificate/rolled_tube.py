@@ -36,7 +36,10 @@ class RolledTube(Tube):
     """As Tube; `follow` in the place of `step`. Whether it was inside the set is asked of every inner step
     of the way."""
 
-    def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
+    def __init__(
+        self, certificate: Certificate, start: Three | None = None, regions: Regions | None = None
+    ) -> None:
+        """`regions`: those of another tube of the certificate."""
         self.certificate = certificate
         self.window = 1  # what the way goes back to is looked at tick by tick
         self.periods = of_certificate(certificate)
@@ -46,7 +49,6 @@ class RolledTube(Tube):
         self._one = InnerStep(inner(certificate.plant, certificate.inner))
         self._length = certificate.h / certificate.inner
         self._share = certificate.K[0] * certificate.h
-        self._limits = [certificate.operating.ranges[name] for name in NU]
         self._nodes: deque[Node] = deque()
         self._from_s = float("-inf")  # from where the last path went
         self._left: str | None = None  # what left the set on the way, or may have
@@ -54,10 +56,17 @@ class RolledTube(Tube):
         # what samples that did not count moved each row by; 0 where a part of the way was gone again
         self.uncounted: list[float] = [0.0, 0.0, 0.0]
         cells = certificate.plant.cells
-        self._regions = Regions(certificate, cells) if cells else None
+        assert cells is not None  # the certificate of an observer with inner steps
+        self.regions = regions or Regions(certificate, cells)
+        self._set = self.regions.operating
         self._region: Region | None = None  # in which the ship surely is; None: it may be outside
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
+
+    @property
+    def left(self) -> bool:
+        """Whether the last way may have left the set."""
+        return self._left is not None
 
     @property
     def widest(self) -> Three:
@@ -71,6 +80,7 @@ class RolledTube(Tube):
         return (self.beta, self.psi) if self.rests_on(since_s) else UNKNOWN
 
     def rests_on(self, since_s: float) -> bool:
+        """Whether the last way began no earlier than that."""
         return self._from_s >= since_s
 
     def know(self, most: Three, psi: float) -> None:
@@ -92,7 +102,7 @@ class RolledTube(Tube):
         if not self._nodes:
             return
         bound, last = (*self.beta, self.psi), self._nodes[-1]
-        way = (*self.way, max(map(abs, self._limits[2])))
+        way = (*self.way, max(map(abs, self._set.ranges["r"])))
         old, self._nodes = self._nodes, deque()
         for node in old:
             at: Four = tuple(  # type: ignore[assignment]
@@ -135,27 +145,26 @@ class RolledTube(Tube):
         self, s: Situation, within: Three | None = None, dt: float = 0.0, on_the_way: bool = True
     ) -> str | None:
         """What left the set on the way to now, or does now."""
+        if on_the_way and self._left:
+            return self._left
         within = within or self.beta
         now: Motion = (s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r))  # type: ignore[assignment, operator]
         region = self._around(now, (*within, self.psi))
-        return (self._left if on_the_way else None) or self.certificate.operating.outside(
-            s, add(within, scaled_row(self._length, region.way if region else self.way))
-        )
+        way = region.way if region else self.way
+        return self._set.outside(s, add(within, scaled_row(self._length, way)))
 
     def _around(self, motion: Motion, x: Four) -> Region | None:
         """The part of the set in which the ship surely is during a step from that motion."""
-        if self._regions is None:
-            return None
-        last = self._region.way if self._region else None
-        return self._regions.around(motion, x, self._force, last)
+        return self.regions.around(motion, x, self._force, self._region)
 
-    def _outside(self, motion: Motion, x: Four) -> str | None:
+    def _outside(self, motion: Motion, x: Four) -> str:
         """What may be outside as an inner step begins, or within it."""
-        for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
-            most = b + self._length * w
+        ranges = self._set.ranges
+        for name, value, b, w in zip(NU, motion, x, self.way, strict=False):
+            most, (low, high) = b + self._length * w, ranges[name]
             if not low + most <= value <= high - most:
                 return outside_in_words(name, value, most, low, high)
-        return None
+        return outside_in_words("stream", motion[3], 0.0, *ranges["stream"])
 
     def _on(self, x: Four) -> Four:
         u, v, r, psi = x
@@ -188,8 +197,9 @@ class RolledTube(Tube):
         self.noise: Three = c.disturbance.noise(c.noise, H_s)
         self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
         self._noise: Four = (*self.noise, self.heading_noise)
-        self._force, self.way = force, way(c.plant, force)
-        d = self._one.pushes(force, self.way[2])
+        self._force = force
+        self.way: Three = self.regions.everywhere.under(force).way
+        d = self._one.pushes(force, way(c.plant, force)[2])
         self._rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))
 
 
