@@ -81,16 +81,16 @@ class Stabilizer:
         certificate, known = tube.certificate, self._known(observer, open_, tube)
         if not self._inside:
             self._guessed = tuple(a for a in NU if not open_.known(a))
-        proven = self._inside >= tube.window and tube.rests_on(self._inside_s)
+        proven = self._proven(tube)
         within = least((tube.beta, tube.psi), known) if proven else known
         apart = self._apart(observer, measured, tube, dt)
         left = tube.outside(s, within[0], dt, proven)
-        # only the way to now may have left it
+        # whether only the way to now may have left it
         again = left is not None and proven and tube.outside(s, open_.bounds[0], dt, False) is None
         wrong = late or doubt or apart or _unsure(measured)
         self.outside = wrong or (left and open_.unknown(self._guessed, self._heard)) or left
         self._count(measured.now_s, again and not wrong)
-        if proven := self._inside >= tube.window and tube.rests_on(self._inside_s):
+        if proven := self._proven(tube):
             tube.know(*known)
             if nothing := tube.says_nothing():  # what is known says more
                 tube.reset(*least((tube.beta, tube.psi), known))
@@ -133,6 +133,10 @@ class Stabilizer:
         if self._parity:
             self._parity.begin()
 
+    def _proven(self, tube: Tube) -> bool:
+        """Whether the tube's bound rests only on what was surely inside."""
+        return self._inside >= tube.window and tube.rests_on(self._inside_s)
+
     def _inside_for_s(self, now_s: float) -> float:
         return now_s - self._inside_s if self._inside else 0.0
 
@@ -160,7 +164,7 @@ class Stabilizer:
     def _waits(self, tube: Tube) -> str:
         """What the promise waits for while nothing is wrong any more, and for how long [s] if nothing comes
         between."""
-        for_s = (tube.window - self._inside) * tube.certificate.h
+        for_s = max(tube.window - self._inside, 1) * tube.certificate.h
         return (
             "all is well again; the promise waits until no late measurement can look back to when it was "
             f"not, wait = {num(for_s, 2)} s"

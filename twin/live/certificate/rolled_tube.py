@@ -41,7 +41,7 @@ class RolledTube(Tube):
     ) -> None:
         """`regions`: those of another tube of the certificate."""
         self.certificate = certificate
-        self.window = 1  # what the way goes back to is looked at tick by tick
+        self.window = 2  # ticks; what the way goes back to is looked at in each
         self.periods = of_certificate(certificate)
         self.oldest_s = KEPT_S
         self.beta = certificate.noise if start is None else start
