@@ -17,7 +17,7 @@ from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.observer.operating import EVERYTHING, OperatingSet
 
 STREAMS = 8  # steps in which the current's speed is rounded up
-KEPT = 400  # parts of the set that are remembered
+KEPT = 200  # parts of the set that are remembered
 ROUNDING = 1e-9
 
 Floats = tuple[float, ...]
@@ -27,28 +27,43 @@ class Region:
     """Some cells of the set, under a current of up to `stream` [m/s]. `rows`: (M, d) of u, v, r, psi; `way`:
     how fast anything in it moves [m/s2, m/s2, rad/s2]."""
 
-    __slots__ = ("_force", "_one", "_plant", "_shrunk", "ends", "rows", "stream", "way")
+    __slots__ = ("_ends", "_far", "_fit", "_force", "_pushed", "rows", "stream", "way")
 
     def __init__(self, plant: Plant, ends: Ends, stream: float) -> None:
-        self._plant, self.ends, self.stream = plant, ends, stream
-        self._one = InnerStep(plant, clipped=False)
-        self._force: Row | None = None
-        self.rows: tuple[Floats, ...] = ()
-        self.way: Row = (0.0, 0.0, 0.0)
+        one, still = InnerStep(plant, clipped=False), (0.0, 0.0, 0.0)
+        calm = one.pushes(still, plant.most[2])
+        # d and the way are straight in the force: by each of its three, and without it
+        by_each = [
+            [x - c for x, c in zip(one.pushes(unit, way(plant, unit)[2]), calm, strict=True)]
+            for unit in c3.IDENTITY
+        ]
+        self._pushed = [(row, *by, c) for row, *by, c in zip(one.M, *by_each, calm, strict=True)]
+        self._far = [(*row, most) for row, most in zip(plant.inertia, plant.most, strict=True)]
+        self._ends, self.stream, self._force = [(a, b, plant.h) for a, b in ends], stream, still
+        self._fit: list[float] = []
+        self.rows: list[Floats] = []
+        self.way: Row = still
 
     def under(self, force: Row) -> "Region":
         """The same where nobody knows a force of this size [N, N, N m]."""
         if force is not self._force:
-            self._force, self.way = force, way(self._plant, force)
-            d = self._one.pushes(force, self.way[2])
-            self.rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))
-            far = c3.scaled_row(self._plant.h, self.way)
-            self._shrunk = [x for (a, b), w in zip(self.ends, far, strict=True) for x in (a + w, b - w)]
+            self._force, (X, Y, N) = force, force
+            self.rows = [(*row, x * X + y * Y + n * N + c) for row, x, y, n, c in self._pushed]
+            u, v, r = [x * X + y * Y + n * N + most for x, y, n, most in self._far]
+            self.way = u, v, r
+            fit = [(a + h * w, b - h * w) for (a, b, h), w in zip(self._ends, self.way, strict=True)]
+            self._fit = [x for pair in fit for x in pair]
         return self
+
+    def touches(self, motion: Floats, x: Floats) -> bool:
+        """Whether all that is known within x of this motion lies in it."""
+        return motion[3] <= self.stream and all(
+            a + b <= y <= c - b for y, b, (a, c, _) in zip(motion, x, self._ends, strict=False)
+        )
 
     def holds(self, motion: Floats, x: Floats) -> bool:
         """Whether a step from this motion (u, v, r, current), known within x, surely stays in it."""
-        u0, u1, v0, v1, r0, r1 = self._shrunk
+        u0, u1, v0, v1, r0, r1 = self._fit
         u, v, r, stream = motion
         a, b, c, _ = x
         return (
@@ -75,6 +90,8 @@ class Regions:
         """The fewest cells that surely hold a step from this motion; None: it may leave the set. `last`:
         where it was."""
         everywhere = self.everywhere.under(force)
+        if not everywhere.touches(motion, x):
+            return None
         reach = (last or everywhere).way
         for _ in range(2):
             region = self._of(motion, x, reach, force)
@@ -85,11 +102,11 @@ class Regions:
         return region if region.holds(motion, x) else None
 
     def _of(self, motion: Floats, x: Floats, reach: Row, force: Row) -> Region:
-        h = self._plant.h
-        low = tuple(a - b - h * w for a, b, w in zip(motion, x, reach, strict=False))
-        high = tuple(a + b + h * w for a, b, w in zip(motion, x, reach, strict=False))
-        level = min(ceil(STREAMS * motion[3] / self._most - ROUNDING), STREAMS) if self._most else 0
-        key = self._cells.span(low, high), level
+        u, v, r, stream = motion
+        h, (a, b, c) = self._plant.h, reach
+        a, b, c = x[0] + h * a, x[1] + h * b, x[2] + h * c
+        level = min(ceil(STREAMS * stream / self._most - ROUNDING), STREAMS) if stream else 0
+        key = self._cells.span((u - a, v - b, r - c), (u + a, v + b, r + c)), level
         if key not in self._found:
             if len(self._found) >= KEPT:
                 self._found.clear()
