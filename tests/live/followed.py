@@ -31,12 +31,13 @@ class Followed:
         self.periods = SimpleNamespace(count=lambda dt: 1 if dt <= H else 2 if dt <= 2.0 * H else 0)
         self.takes = False  # whether a reset sets its bound
         self.from_s = inf  # what its bound rests on is no older
+        self.only_way = False  # whether only the way to now has left it
         self.left, self.nothing = None, []  # what leaves the set; answers of says_nothing, then None
         self.told, self.stepped, self.asked, self.looked_back = [], [], [], []
 
     def outside(self, s, within, dt, on_the_way=True):
         self.asked.append((within, dt))
-        return self.left
+        return self.left if on_the_way or not self.only_way else None
 
     def rests_on(self, since_s):
         return since_s <= self.from_s
