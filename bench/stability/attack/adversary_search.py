@@ -121,7 +121,7 @@ def horizon(c: Certificate) -> int:
 
 def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: str) -> list[Attacked]:
     rolled = w.c.inner > 1
-    regions = RolledTube(w.c).regions if rolled else None
+    parts = RolledTube(w.c).parts if rolled else None
     tube = np.empty(0) if rolled else bounds(w)
     orders = random_orders(w.c, w.groups, w.runs, w.ticks, rng)
     found: list[Attacked] = []
@@ -135,9 +135,9 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
             orders = _moved(w, was, tube, rng)
         was = sail(w, orders, greedy=way == GREEDY)
         in_set = was.inside
-        if regions is not None:
+        if parts is not None:
             in_set = in_set & w.kept_inside(was.motions)
-            tube, surely = along_the_way(w, was, regions)
+            tube, surely = along_the_way(w, was, parts)
             was = was._replace(inside=surely)
         judged = [_verified(w, was, in_set, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
         found = [a.joined(b) for a, b in zip(found, judged, strict=True)] if found else judged

@@ -5,8 +5,8 @@ import numpy as np
 from bench.stability.attack.cases import FULL_RUN, MIXED
 from bench.stability.attack.run_batch import RunBatch
 from bench.stability.attack.waters import Waters
-from twin.live.certificate.regions import Regions
 from twin.live.certificate.rolled_tube import RolledTube, tube_of
+from twin.live.certificate.set_parts import SetParts
 from twin.live.observer.rollback import Path, Pull, Stretch
 
 PULLS = (3, 4, 5, 2)  # places of u, v, r, psi among an observer's states
@@ -35,7 +35,7 @@ def _of(w: Waters, i: int) -> np.ndarray:
     return np.array(told)
 
 
-def along_the_way(w: Waters, was: RunBatch, regions: Regions) -> tuple[np.ndarray, np.ndarray]:
+def along_the_way(w: Waters, was: RunBatch, parts: SetParts) -> tuple[np.ndarray, np.ndarray]:
     """Of observers that correct at a sample's own time: bounds as above, each run by the way of its estimate;
     and (K + 1, N) whether that has surely been in the set till then."""
     assert was.motions is not None
@@ -44,7 +44,7 @@ def along_the_way(w: Waters, was: RunBatch, regions: Regions) -> tuple[np.ndarra
     for i, group in enumerate(w.groups):
         ways = Ways(w, i, group.ages)
         for run in range(i * w.runs, (i + 1) * w.runs):
-            tube = RolledTube(w.c, regions=regions)
+            tube = RolledTube(w.c, parts=parts)
             told[0, :, run] = *tube.beta, tube.psi
             for k in range(w.ticks):
                 tube.follow(ways.path(k, was.motions[k, :, :, run]))

@@ -14,7 +14,6 @@ from typing import Any
 from twin.checksum import sha256_hex
 from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
-from twin.live.certificate.cells import Cells
 from twin.live.certificate.comparison_systems import Matrix, Row
 from twin.live.certificate.gains import best_gain, gains_that_do, suited_gain, usual_gain
 from twin.live.certificate.heading_bound import with_heading
@@ -151,10 +150,7 @@ class Certificate(Promise):
         if told.pop("sha256") != digest(told):
             raise ValueError("certificate changed since it was written")
         table = _tuples(told)
-        plant = table.pop("plant")
-        ranges, cells = plant.pop("operating")["ranges"], plant.pop("cells")
-        plant["cells"] = Cells(**cells) if cells else None
-        table["plant"] = Plant(**plant, operating=OperatingSet(ranges))
+        table["plant"] = Plant.of_table(table["plant"])
         table["disturbance"] = Disturbance(**table["disturbance"])
         table["step"] = Recursion(**table["step"])
         found = cls(**table)
@@ -170,9 +166,7 @@ class Certificate(Promise):
         bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
         noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
         told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
-        cells = self.plant.cells
-        whole = self.operating.whole and (cells is None or cells.whole(self.operating.reach))
-        return positive and noisy and whole and all(told)
+        return positive and noisy and self.plant.whole and all(told)
 
 
 def certify(

@@ -93,9 +93,9 @@ def slopes(
 def slopes_by_cell(
     model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()
 ) -> tuple[tuple[np.ndarray, ...], np.ndarray, np.ndarray, tuple[float, ...]]:
-    """The same in each cell of motions, without a current: the cells' edges (of u, v, r), lo and hi
-    (3, 5, cells) of nu_dot and of its slopes with (u, v, r, psi), and `moved` all over them; r runs
-    fastest."""
+    """The same in each cell of motions, without a current: edges of the cells along u, v, r in SI, each (n,)
+    with n one more than its pieces; lo, hi (3, 5, N) of nu_dot [m/s2, m/s2, rad/s2] and of its slopes with
+    (u, v, r, psi), N the cells, r runs fastest; `moved` all over them."""
     k = WIDTH + len(numbers)
     found, boxes = _by_motion(model, ranges, pieces, numbers)
     edges = tuple(_edges(*ranges[name], pieces.get(name, 1)) for name in NU)

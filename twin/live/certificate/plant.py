@@ -9,8 +9,8 @@ from typing import Any
 
 from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
-from twin.live.certificate.cells import IN_CELLS, Cells, of_slopes
 from twin.live.certificate.comparison_systems import AXES, Matrix, Row
+from twin.live.certificate.set_cells import IN_CELLS, Cells, of_slopes
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
 from twin.physics import core
@@ -38,6 +38,18 @@ class Plant:
     bend: tuple[tuple[float, ...], ...] = ()
     moved: Row = (0.0, 0.0, 0.0)
     cells: Cells | None = None  # the same, part by part of the set
+
+    @classmethod
+    def of_table(cls, table: dict[str, Any]) -> "Plant":
+        """From its fields by name, those of set and cells as tables."""
+        cells = table["cells"] and Cells(**table["cells"])
+        return cls(**{**table, "operating": OperatingSet(**table["operating"]), "cells": cells})
+
+    @property
+    def whole(self) -> bool:
+        """Whether set and cells have all of their numbers."""
+        cells_whole = self.cells is None or self.cells.whole(self.operating.reach)
+        return self.operating.whole and cells_whole
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""

@@ -12,8 +12,8 @@ from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
 from twin.live.certificate.observer_tube import NONE, NOTHING, UNKNOWN, Three, Tube, halves
 from twin.live.certificate.periods import of_certificate
-from twin.live.certificate.regions import Region, Regions
 from twin.live.certificate.rolled import InnerStep, inner, way
+from twin.live.certificate.set_parts import SetPart, SetParts
 from twin.live.observer.operating import NU, outside_in_words
 from twin.live.observer.rollback import KEPT_S, Motion, Path, State
 from twin.physics.state import Situation
@@ -37,9 +37,9 @@ class RolledTube(Tube):
     of the way."""
 
     def __init__(
-        self, certificate: Certificate, start: Three | None = None, regions: Regions | None = None
+        self, certificate: Certificate, start: Three | None = None, parts: SetParts | None = None
     ) -> None:
-        """`regions`: those of another tube of the certificate."""
+        """`parts`: those of another tube of the certificate."""
         self.certificate = certificate
         self.window = 2  # ticks; what the way goes back to is looked at in each
         self.periods = of_certificate(certificate)
@@ -57,9 +57,9 @@ class RolledTube(Tube):
         self.uncounted: list[float] = [0.0, 0.0, 0.0]
         cells = certificate.plant.cells
         assert cells is not None  # the certificate of an observer with inner steps
-        self.regions = regions or Regions(certificate, cells)
-        self._set = self.regions.operating
-        self._region: Region | None = None  # in which the ship surely is; None: it may be outside
+        self.parts = parts or SetParts(certificate, cells)
+        self._set = self.parts.operating
+        self._part: SetPart | None = None  # in which the ship surely is; None: it may be outside
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
 
@@ -124,9 +124,9 @@ class RolledTube(Tube):
             nodes.append(Node(path.start_s, x, of_state(path.start), x))
         for time_s, motions, pulls, after in path.stretches:
             for k, motion in enumerate(motions):
-                if not (k and self._region and self._region.holds(motion, x)):
-                    self._region = self._around(motion, x)
-                if self._region is None:
+                if not (k and self._part and self._part.holds(motion, x)):
+                    self._part = self._around(motion, x)
+                if self._part is None:
                     self._left = self._left or self._outside(motion, x)
                 x = self._on(x)
             before = x
@@ -149,13 +149,13 @@ class RolledTube(Tube):
             return self._left
         within = within or self.beta
         now: Motion = (s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r))  # type: ignore[assignment, operator]
-        region = self._around(now, (*within, self.psi))
-        way = region.way if region else self.way
+        part = self._around(now, (*within, self.psi))
+        way = part.way if part else self.way
         return self._set.outside(s, add(within, scaled_row(self._length, way)))
 
-    def _around(self, motion: Motion, x: Four) -> Region | None:
+    def _around(self, motion: Motion, x: Four) -> SetPart | None:
         """The part of the set in which the ship surely is during a step from that motion."""
-        return self.regions.around(motion, x, self._force, self._region)
+        return self.parts.around(motion, x, self._force, self._part)
 
     def _outside(self, motion: Motion, x: Four) -> str:
         """What may be outside as an inner step begins, or within it."""
@@ -168,7 +168,7 @@ class RolledTube(Tube):
 
     def _on(self, x: Four) -> Four:
         u, v, r, psi = x
-        rows = self._region.rows if self._region else self._rows
+        rows = self._part.rows if self._part else self._rows
         a, b, c, e = [min(m0 * u + m1 * v + m2 * r + m3 * psi + d, NOTHING) for m0, m1, m2, m3, d in rows]
         return a, b, c, e
 
@@ -198,7 +198,7 @@ class RolledTube(Tube):
         self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
         self._noise: Four = (*self.noise, self.heading_noise)
         self._force = force
-        self.way: Three = self.regions.everywhere.under(force).way
+        self.way: Three = self.parts.everywhere.under(force).way
         d = self._one.pushes(force, way(c.plant, force)[2])
         self._rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))
 

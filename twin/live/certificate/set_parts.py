@@ -9,11 +9,11 @@ from dataclasses import replace
 from math import ceil
 
 from twin.live.certificate import comparison_systems as c3
-from twin.live.certificate.cells import Cells, Ends, Span
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import AXES, Row
 from twin.live.certificate.plant import Plant
 from twin.live.certificate.rolled import InnerStep, inner, way
+from twin.live.certificate.set_cells import Cells, Ends, Span
 from twin.live.observer.operating import EVERYTHING, OperatingSet
 
 STREAMS = 8  # steps in which the current's speed is rounded up
@@ -23,7 +23,7 @@ ROUNDING = 1e-9
 Floats = tuple[float, ...]
 
 
-class Region:
+class SetPart:
     """Some cells of the set, under a current of up to `stream` [m/s]. `rows`: (M, d) of u, v, r, psi; `way`:
     how fast anything in it moves [m/s2, m/s2, rad/s2]."""
 
@@ -44,7 +44,7 @@ class Region:
         self.rows: list[Floats] = []
         self.way: Row = still
 
-    def under(self, force: Row) -> "Region":
+    def under(self, force: Row) -> "SetPart":
         """The same where nobody knows a force of this size [N, N, N m]."""
         if force is not self._force:
             self._force, (X, Y, N) = force, force
@@ -74,7 +74,7 @@ class Region:
         )
 
 
-class Regions:
+class SetParts:
     """Of one certificate, each worked out when it is first needed."""
 
     def __init__(self, certificate: Certificate, cells: Cells) -> None:
@@ -82,11 +82,11 @@ class Regions:
         self.operating = OperatingSet({**certificate.operating.ranges, **cells.ranges})
         self._plant = replace(inner(certificate.plant, certificate.inner), cells=None, moved=cells.moved)
         self._most = self.operating.ranges.get("stream", EVERYTHING)[1]
-        self._found: dict[tuple[Span, int], Region] = {}
+        self._found: dict[tuple[Span, int], SetPart] = {}
         whole = cells.span(*zip(*cells.ranges.values(), strict=True))
         self.everywhere = self._made(whole, self._most)
 
-    def around(self, motion: Floats, x: Floats, force: Row, last: Region | None = None) -> Region | None:
+    def around(self, motion: Floats, x: Floats, force: Row, last: SetPart | None = None) -> SetPart | None:
         """The fewest cells that surely hold a step from this motion; None: it may leave the set. `last`:
         where it was."""
         everywhere = self.everywhere.under(force)
@@ -94,14 +94,14 @@ class Regions:
             return None
         reach = (last or everywhere).way
         for _ in range(2):
-            region = self._of(motion, x, reach, force)
-            if region.holds(motion, x):
-                return region
-            reach = region.way
-        region = self._of(motion, x, everywhere.way, force)
-        return region if region.holds(motion, x) else None
+            part = self._of(motion, x, reach, force)
+            if part.holds(motion, x):
+                return part
+            reach = part.way
+        part = self._of(motion, x, everywhere.way, force)
+        return part if part.holds(motion, x) else None
 
-    def _of(self, motion: Floats, x: Floats, reach: Row, force: Row) -> Region:
+    def _of(self, motion: Floats, x: Floats, reach: Row, force: Row) -> SetPart:
         u, v, r, stream = motion
         h, (a, b, c) = self._plant.h, reach
         a, b, c = x[0] + h * a, x[1] + h * b, x[2] + h * c
@@ -113,7 +113,7 @@ class Regions:
             self._found[key] = self._made(key[0], level * self._most / STREAMS)
         return self._found[key].under(force)
 
-    def _made(self, span: Span, stream: float) -> Region:
+    def _made(self, span: Span, stream: float) -> SetPart:
         """A current adds r x nu_c, itself to the slope with r, and to that with the heading its turning."""
         steep, ends = self._cells.over(span), self._cells.ends(span)
         r, own = max(map(abs, ends[2])), (stream, stream, 0.0)
@@ -129,4 +129,4 @@ class Regions:
             most=c3.row(steep.most[i] + r * own[i] for i in AXES),
             operating=OperatingSet({**self.operating.ranges, "r": ends[2]}),
         )
-        return Region(plant.at_period(plant.h), ends, stream)
+        return SetPart(plant.at_period(plant.h), ends, stream)

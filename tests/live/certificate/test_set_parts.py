@@ -1,4 +1,4 @@
-"""The slopes of the part of the operating set in which the ship surely is: cells, regions, and a step in them."""
+"""The slopes of the part of the operating set in which the ship surely is: cells, parts, and a step in them."""
 
 import json
 from dataclasses import replace
@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from bench.stability.attack.cases import AttackCase, certified_for
-from twin.live.certificate.cells import Cells
 from twin.live.certificate.certificate import Certificate, certify, digest
 from twin.live.certificate.enclosure import contribution, points_of, situation_of
 from twin.live.certificate.plant import usual_noise
-from twin.live.certificate.regions import Region, Regions
 from twin.live.certificate.rolled import InnerStep, way
+from twin.live.certificate.set_cells import Cells
+from twin.live.certificate.set_parts import SetPart, SetParts
 from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.effects import find
 from twin.physics.model import CORE, Model
@@ -25,7 +25,7 @@ SAMPLES = 4000
 @pytest.fixture(scope="module")
 def boat():
     model, c = certified_for(AttackCase("usv", 10.0))
-    return Model.of(load("usv", arrays=False)), c, Regions(c, c.plant.cells), model
+    return Model.of(load("usv", arrays=False)), c, SetParts(c, c.plant.cells), model
 
 
 def rates_at(model, at):
@@ -37,8 +37,8 @@ def rates_at(model, at):
 def test_no_point_of_a_cell_is_steeper_than_its_numbers(boat):
     """Test: random points and corners of the set as far as a bound may reach. Expected: rate and slopes at each of
     them are no more than the numbers of the cell in which it lies, and the greatest are met to a tenth."""
-    model, c, regions, _ = boat
-    at = points_of({**regions.operating.ranges, "stream": (0.0, 0.0)}, SAMPLES, 5)
+    model, c, parts, _ = boat
+    at = points_of({**parts.operating.ranges, "stream": (0.0, 0.0)}, SAMPLES, 5)
     rates, cells = rates_at(model, at), c.plant.cells
     met = np.zeros(3)
     for k in range(SAMPLES):
@@ -67,22 +67,22 @@ def test_over_the_set_of_the_certificate_the_cells_are_as_steep_as_its_plant(boa
 
 
 def test_a_part_of_the_set_holds_what_lies_in_it_with_its_way(boat):
-    """Expected: the region around a motion contains it with its bound and the way of a step; at sea speed it is a
+    """Expected: the part around a motion contains it with its bound and the way of a step; at sea speed it is a
     fraction of the set and its way a fraction of the set's; near the edge there is none."""
-    _, c, regions, _ = boat
+    _, c, parts, _ = boat
     force, x = c.disturbance.at(0.0), (0.06, 0.06, 0.01, 0.005)
-    region, everywhere = regions.around((1.2, 0.0, 0.0, 0.0), x, force), regions.everywhere.under(force)
-    assert region.holds((1.2, 0.0, 0.0, 0.0), x)
-    assert region.way[2] < 0.3 * everywhere.way[2]
-    (u0, _), (_, v1), (_, r1) = (regions.operating.ranges[name] for name in ("u", "v", "r"))
-    assert regions.around((1.2, v1 - 0.061, 0.0, 0.0), x, force) is None  # in the set, but its way is not
-    assert regions.around((1.2, v1 - 0.09, 0.0, 0.0), x, force) is not None
-    assert regions.around((u0 + 0.05, 0.0, 0.0, 0.0), x, force) is None
-    assert regions.around((1.2, 0.0, r1, 0.0), x, force) is None
-    most = regions.operating.ranges["stream"][1]
-    assert regions.around((1.2, 0.0, 0.0, 1.01 * most), x, force) is None
-    with_current = regions.around((1.2, 0.0, 0.0, most), x, force)
-    assert all(a[2] > b[2] for a, b in zip(with_current.rows[:2], region.rows[:2], strict=True))
+    part, everywhere = parts.around((1.2, 0.0, 0.0, 0.0), x, force), parts.everywhere.under(force)
+    assert part.holds((1.2, 0.0, 0.0, 0.0), x)
+    assert part.way[2] < 0.3 * everywhere.way[2]
+    (u0, _), (_, v1), (_, r1) = (parts.operating.ranges[name] for name in ("u", "v", "r"))
+    assert parts.around((1.2, v1 - 0.061, 0.0, 0.0), x, force) is None  # in the set, but its way is not
+    assert parts.around((1.2, v1 - 0.09, 0.0, 0.0), x, force) is not None
+    assert parts.around((u0 + 0.05, 0.0, 0.0, 0.0), x, force) is None
+    assert parts.around((1.2, 0.0, r1, 0.0), x, force) is None
+    most = parts.operating.ranges["stream"][1]
+    assert parts.around((1.2, 0.0, 0.0, 1.01 * most), x, force) is None
+    with_current = parts.around((1.2, 0.0, 0.0, most), x, force)
+    assert all(a[2] > b[2] for a, b in zip(with_current.rows[:2], part.rows[:2], strict=True))
 
 
 def test_rows_that_are_straight_in_the_force_are_those_of_the_inner_step(boat):
@@ -90,10 +90,10 @@ def test_rows_that_are_straight_in_the_force_are_those_of_the_inner_step(boat):
     plant = replace(c.plant, cells=None).at_period(c.h / c.inner)
     ends = tuple(plant.operating.ranges[name] for name in ("u", "v", "r"))
     for force in ((2.0, 3.0, 5.0), (0.0, 7.0, 1.0)):
-        region, step = Region(plant, ends, 0.0).under(force), InnerStep(plant, clipped=False)
-        assert region.way == pytest.approx(way(plant, force))
+        part, step = SetPart(plant, ends, 0.0).under(force), InnerStep(plant, clipped=False)
+        assert part.way == pytest.approx(way(plant, force))
         d = step.pushes(force, way(plant, force)[2])
-        for row, m, told in zip(region.rows, step.M, d, strict=True):
+        for row, m, told in zip(part.rows, step.M, d, strict=True):
             assert row == pytest.approx((*m, told), rel=1e-12)
 
 
@@ -101,20 +101,20 @@ def test_rows_that_are_straight_in_the_force_are_those_of_the_inner_step(boat):
 def test_damping_takes_an_error_of_turning_away_where_nothing_is_clipped(boat, speed):
     """Test: a step without a force from an error of turning alone. Expected: in the part of the set it falls, and
     by the slopes of the whole set, where clipping may switch damping off, it grows."""
-    _, c, regions, _ = boat
-    region = regions.around((speed, 0.0, 0.0, 0.0), (0.02, 0.02, 0.02, 0.0), (0.0, 1e-9, 0.0))
+    _, c, parts, _ = boat
+    part = parts.around((speed, 0.0, 0.0, 0.0), (0.02, 0.02, 0.02, 0.0), (0.0, 1e-9, 0.0))
     whole = InnerStep(replace(c.plant, cells=None).at_period(c.h / c.inner))
-    assert region.rows[2][2] < 0.995 < 1.0 < whole.M[2][2]
+    assert part.rows[2][2] < 0.995 < 1.0 < whole.M[2][2]
 
 
 @pytest.mark.parametrize("current", [0.0, 0.3])
 def test_no_pair_of_motions_parts_faster_than_a_region_says(boat, current):
     """Test: random pairs of ship and estimate in a current, a hostile force within D, any rudder and propeller, the
     ship sailed in forty steps, the estimate in one of the observer's. Expected: their distance after an inner step is
-    within M x + d of the region that holds it, and nearly reaches it."""
-    model, c, regions, _ = boat
+    within M x + d of the part that holds it, and nearly reaches it."""
+    model, c, parts, _ = boat
     rng, force, h = np.random.default_rng(3), c.disturbance.at(0.0), c.h / c.inner
-    dynamics, ranges = KnownDynamics(model, (0.0, current)), regions.operating.ranges
+    dynamics, ranges = KnownDynamics(model, (0.0, current)), parts.operating.ranges
     closest, tried = np.zeros(3), 0
     scale = np.array([0.08, 0.1, 0.1, 0.01])
     while tried < 250:
@@ -126,8 +126,8 @@ def test_no_pair_of_motions_parts_faster_than_a_region_says(boat, current):
         nu += np.array((water.u, water.v, 0.0))
         at = Situation(0.0, 0.0, psi, *nu, delta=delta, n=n)
         dynamics.forces(at)
-        region = regions.around((at.u_r, at.v_r, at.r, current), tuple(known), force)
-        if region is None:
+        part = parts.around((at.u_r, at.v_r, at.r, current), tuple(known), force)
+        if part is None:
             continue
         tried += 1
         push = Force(*(force * rng.choice((-1.0, 1.0), 3)))
@@ -141,7 +141,7 @@ def test_no_pair_of_motions_parts_faster_than_a_region_says(boat, current):
                 z + h / 40 * rate for z, rate in zip((there.u, there.v, there.r), rates, strict=True)
             )
         error = np.abs(estimate - (there.u, there.v, there.r, there.psi))
-        most = np.array([np.dot(row[:4], known) + row[4] for row in region.rows])
+        most = np.array([np.dot(row[:4], known) + row[4] for row in part.rows])
         assert np.all(error <= most * (1.0 + 1e-9)), (nu, known, error / most)
         closest = np.maximum(closest, (error / most)[:3])
     assert np.all(closest > 0.8)
