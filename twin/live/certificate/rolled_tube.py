@@ -86,12 +86,11 @@ class RolledTube(Tube):
     def know(self, most: Three, psi: float) -> None:
         """Of this and what the tube says the lesser holds, row by row, and the next way begins at it. A
         sample takes away so much of an error that only in yaw, and where samples are seldom, there is much
-        between them."""
-        u, v, r = self.beta
-        self.beta = min(u, most[0]), min(v, most[1]), min(r, most[2])
-        self.psi = min(self.psi, psi)
+        between them. The bound of now stays the tube's: it forgives a sample that is off by more than n."""
         if self._nodes:
-            self._nodes[-1] = self._nodes[-1]._replace(bound=(*self.beta, self.psi))
+            (u, v, r), last = self.beta, self._nodes[-1]
+            known = min(u, most[0]), min(v, most[1]), min(r, most[2]), min(self.psi, psi)
+            self._nodes[-1] = last._replace(bound=known)
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open; before now it was at most its way from there."""
