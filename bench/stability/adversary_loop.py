@@ -21,7 +21,9 @@ from twin.physics.model import Model
 from twin.physics.state import Situation
 
 BEGIN_S, WALL = 500.0, 1.7e9  # the loop's clock at the first tick, and the wall's at its zero
-STEERS = np.radians(2.5)  # rad/s: a rudder that jumps is refused by the gates
+# a rudder or a shaft that jumps is refused by the gates
+STEERS = np.radians(2.5)  # rad/s
+REVS_UP = 50.0  # 1/s2, half of what a gate takes
 CHANNELS = (
     "north_m",
     "east_m",
@@ -72,22 +74,25 @@ class Loops(AdversaryFleet):
             loop_of(settings, ears, Outbox(Publisher(), "twin", "ship"), None) for ears in self.ears
         ]
         tube, self.rudder = self.loops[0].stabilizer.tube, np.zeros(runs)
+        self.shaft: np.ndarray | None = None  # as first ordered
         assert tube is not None, self.loops[0].stabilizer.why_not
         super().__init__(Model.of(self.loops[0].ship), tube.certificate, runs, seed, dropouts=case.dropouts)
         self.halfway, self.late = self.truth, np.arange(runs) % 2 == 1
 
     def step(self, k: int) -> np.ndarray:
         """One tick of all loops on what their ships' instruments say, then the ships sail on; (3, runs) the
-        error at the tick. The rudder moves before the tick: what it moved within a sample would be a force
-        beyond the adversary's, which takes all of D."""
+        error at the tick. Rudder and shaft move before the tick: what they moved within a sample would be a
+        force beyond the adversary's, which takes all of D."""
         self._helm()
+        shaft, most = self.inputs["n"] if self.shaft is None else self.shaft, REVS_UP * self.h
+        self.shaft = shaft + np.clip(self.inputs["n"] - shaft, -most, most)
         self.rudder += np.clip(self.inputs["delta"] - self.rudder, -STEERS * self.h, STEERS * self.h)
         self._tick(k)
         error = self.estimate - np.array(self.truth[3:])
         self.push = (
             -np.sign(self.inverse.T @ (self._against(k) / np.array(self.c.bound)[:, None])) * self.limit
         )
-        at = Situation(delta=self.rudder, n=self.inputs["n"])
+        at = Situation(delta=self.rudder, n=self.shaft)
         self.halfway = self.true.step(self.truth, at, 0.5 * self.h)
         self.truth = self.true.step(self.halfway, at, 0.5 * self.h)
         return error
@@ -116,8 +121,9 @@ class Loops(AdversaryFleet):
         x, y, psi, *nu = np.where(self.late, self.halfway, self.truth)
         u, v, r = np.array(nu) + self.noise * side
         heading = np.degrees(psi + HEADING_NOISE * side[2]) % 360.0
+        assert self.shaft is not None
         said = np.array(
-            [x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.inputs["n"], 0.0 * u]
+            [x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.shaft, 0.0 * u]
         )
         said[SPEEDS] = np.where(self.received, said[SPEEDS], np.nan)
         return said

@@ -1,6 +1,6 @@
 """A tube and an estimate in the place of the true ones, that take down what the stabilizer tells them."""
 
-from math import cos, sin
+from math import cos, inf, sin
 from types import SimpleNamespace
 
 import pytest
@@ -30,12 +30,17 @@ class Followed:
         )
         self.periods = SimpleNamespace(count=lambda dt: 1 if dt <= H else 2 if dt <= 2.0 * H else 0)
         self.takes = False  # whether a reset sets its bound
+        self.from_s = inf  # what its bound rests on is no older
+        self.only_way = False  # whether only the way to now has left it
         self.left, self.nothing = None, []  # what leaves the set; answers of says_nothing, then None
         self.told, self.stepped, self.asked, self.looked_back = [], [], [], []
 
-    def outside(self, s, within, dt):
+    def outside(self, s, within, dt, on_the_way=True):
         self.asked.append((within, dt))
-        return self.left
+        return self.left if on_the_way or not self.only_way else None
+
+    def rests_on(self, since_s):
+        return since_s <= self.from_s
 
     def says_nothing(self):
         return self.nothing.pop(0) if self.nothing else None
@@ -67,6 +72,7 @@ class RolledAlong(RolledTube):
 
     widest = Followed.widest
     outside, says_nothing, carried = Followed.outside, Followed.says_nothing, Followed.carried
+    rests_on, left = Followed.rests_on, None
     know, reset = Followed.know, Followed.reset
 
     def follow(self, path, sea, acts):

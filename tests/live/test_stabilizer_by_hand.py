@@ -1,7 +1,7 @@
 """The stabilizer beside a tube that takes down what it is told: when a promise is given and what it waits for, tick by
 tick and reason by reason."""
 
-from math import pi
+from math import inf, pi
 
 import pytest
 
@@ -63,6 +63,32 @@ def test_the_promise_comes_back_when_all_that_a_late_measurement_looks_back_on_w
     for _ in range(2):  # proven: the tube's own bound counts as well
         one.run()
         assert one.tube.asked[-1] == ((0.2, 0.05, 0.001), H)
+
+
+def test_where_only_the_way_to_now_left_the_set_it_begins_anew_in_this_tick_already():
+    """Test: a tick whose way may have left the set though the samples of now lie in it, and the same while an
+    instrument is doubted. Expected: no promise in it, and that tick counts as the first of those inside; not where
+    something is wrong besides."""
+    for doubt, inside in (("", 1), ("the log is broken", 0)):
+        one = Watch()
+        one.run(3)
+        one.tube.left, one.tube.only_way = "too fast", True
+        assert not one.run(doubt=doubt).inside and one.why[-1] == (doubt or "too fast")
+        assert one.one._inside == inside and told(one.tube) == ("reset", *bounds())
+        one.tube.left = None
+        ticks = WINDOW - inside
+        assert [one.run().inside for _ in range(ticks)] == [False] * (ticks - 1) + [True]
+
+
+def test_a_bound_that_rests_on_what_was_before_is_none_and_no_way_before_counts():
+    """Test: a sample whose time is before the ship was surely inside. Expected: no promise in that tick, though the
+    ticks inside are enough and the way back left the set; at the next one it is back."""
+    one = Watch()
+    one.run(WINDOW + 1)
+    one.tube.from_s, one.tube.left, one.tube.only_way = 0.0, "too fast", True
+    assert not one.run().inside and one.why[-1].endswith(f"wait = {H:.2f} s")
+    one.tube.from_s, one.tube.left = inf, None
+    assert one.run().inside
 
 
 def test_what_was_measured_since_it_is_inside_leaves_open_its_ages_way():

@@ -146,6 +146,7 @@ class Loop:
             or next(iter(self._doubts()), "")
             or next(iter(self.sensors.loud()), "")
             or self.sensors.stamps.unsure(measured.now_s)
+            or self.sensors.jumped(CONTROLS.values(), measured.now_s)
         )
 
     def measure_parts(self) -> Parts:

@@ -81,19 +81,16 @@ class Stabilizer:
         certificate, known = tube.certificate, self._known(observer, open_, tube)
         if not self._inside:
             self._guessed = tuple(a for a in NU if not open_.known(a))
-        within = least((tube.beta, tube.psi), known) if self._inside >= tube.window else known
+        proven = self._proven(tube)
+        within = least((tube.beta, tube.psi), known) if proven else known
         apart = self._apart(observer, measured, tube, dt)
-        left = tube.outside(s, within[0], dt)
-        self.outside = (
-            late
-            or doubt
-            or apart
-            or _unsure(measured)
-            or (left and open_.unknown(self._guessed, self._heard))
-            or left
-        )
-        self._count(measured.now_s)
-        if proven := self._inside >= tube.window:
+        left = tube.outside(s, within[0], dt, proven)
+        # whether only the way to now may have left it
+        again = left is not None and proven and tube.outside(s, open_.bounds[0], dt, False) is None
+        wrong = late or doubt or apart or _unsure(measured)
+        self.outside = wrong or (left and open_.unknown(self._guessed, self._heard)) or left
+        self._count(measured.now_s, again and not wrong)
+        if proven := self._proven(tube):
             tube.know(*known)
             if nothing := tube.says_nothing():  # what is known says more
                 tube.reset(*least((tube.beta, tube.psi), known))
@@ -136,6 +133,10 @@ class Stabilizer:
         if self._parity:
             self._parity.begin()
 
+    def _proven(self, tube: Tube) -> bool:
+        """Whether the tube's bound rests only on what was surely inside."""
+        return self._inside >= tube.window and tube.rests_on(self._inside_s)
+
     def _inside_for_s(self, now_s: float) -> float:
         return now_s - self._inside_s if self._inside else 0.0
 
@@ -148,13 +149,14 @@ class Stabilizer:
         carried = tube.carried((pulled["u"], pulled["v"], pulled["r"]), pulled["psi"], self._inside_s)
         return least(open_.bounds, carried)
 
-    def _count(self, now_s: float) -> None:
-        """For how long it has surely been inside; a bound that was contradicted begins anew afterwards."""
+    def _count(self, now_s: float, again: bool) -> None:
+        """For how long it has surely been inside (`again`: from now on); a bound that was contradicted begins
+        anew afterwards."""
         was = self.broken
         self.broken = contradicted(NU, self._watched, now_s) if self.promises else ""
         if self.outside is not None or (was and not self.broken):
             self._inside = 0
-        if self.outside is None:
+        if self.outside is None or again:
             self._inside += 1
         if self._inside == 1:
             self._inside_s = now_s
@@ -162,7 +164,7 @@ class Stabilizer:
     def _waits(self, tube: Tube) -> str:
         """What the promise waits for while nothing is wrong any more, and for how long [s] if nothing comes
         between."""
-        for_s = (tube.window - self._inside) * tube.certificate.h
+        for_s = max(tube.window - self._inside, 1) * tube.certificate.h
         return (
             "all is well again; the promise waits until no late measurement can look back to when it was "
             f"not, wait = {num(for_s, 2)} s"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.stability.attack.bounds import bounds
+from bench.stability.attack.bounds import along_the_way, bounds
 from bench.stability.attack.cases import FULL_RUN, GROUPS, MIXED, AttackCase, Group, certified_for
 from bench.stability.attack.orders import Orders, random_orders
 from bench.stability.attack.run_batch import RunBatch, sail
@@ -14,6 +14,7 @@ from bench.stability.attack.steepest import worse
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.rolled import bound_at_any_ages
+from twin.live.certificate.rolled_tube import RolledTube
 
 RANDOM, GREEDY, STEEPEST, MOVED = "random", "greedy", "steepest", "moved"
 PASSES = (RANDOM, GREEDY, STEEPEST, MOVED, STEEPEST)
@@ -119,7 +120,9 @@ def horizon(c: Certificate) -> int:
 
 
 def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: str) -> list[Attacked]:
-    tube = bounds(w)
+    rolled = w.c.inner > 1
+    parts = RolledTube(w.c).parts if rolled else None
+    tube = np.empty(0) if rolled else bounds(w)
     orders = random_orders(w.c, w.groups, w.runs, w.ticks, rng)
     found: list[Attacked] = []
     was: RunBatch | None = None
@@ -131,7 +134,12 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
         elif way == MOVED and was is not None:
             orders = _moved(w, was, tube, rng)
         was = sail(w, orders, greedy=way == GREEDY)
-        judged = [_verified(w, was, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
+        in_set = was.inside
+        if parts is not None:
+            in_set = in_set & w.kept_inside(was.motions)
+            tube, surely = along_the_way(w, was, parts)
+            was = was._replace(inside=surely)
+        judged = [_verified(w, was, in_set, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
         found = [a.joined(b) for a, b in zip(found, judged, strict=True)] if found else judged
     return found
 
@@ -153,7 +161,10 @@ def _moved(w: Waters, was: RunBatch, tube: np.ndarray, rng: np.random.Generator)
     return was.orders.of(chosen).moved(rng, MOVE_SHARE, children)
 
 
-def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
+def _verified(
+    w: Waters, was: RunBatch, in_set: np.ndarray, tube: np.ndarray, i: int, way: str, name: str
+) -> Attacked:
+    """`was.inside`: where the live bound is promised; `in_set`: where the ultimate one holds."""
     of = slice(i * w.runs, (i + 1) * w.runs)
     group, inside = w.groups[i], was.inside[1:, of]
     error = np.abs(was.error[1:, :, of])
@@ -164,7 +175,7 @@ def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name
     bound, of_bound = ultimate(w.c, group), np.zeros(AXES)
     if bound:
         ratio = error[:, :AXES] / np.array(bound)[:, None]
-        of_bound = np.where(inside[:, None], ratio, 0.0).max(axis=(0, 2))
+        of_bound = np.where(in_set[1:, None, of], ratio, 0.0).max(axis=(0, 2))
     first = ""
     if broken.any():
         k, run = np.argwhere(broken)[0]

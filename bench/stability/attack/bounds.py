@@ -3,8 +3,10 @@
 import numpy as np
 
 from bench.stability.attack.cases import FULL_RUN, MIXED
+from bench.stability.attack.run_batch import RunBatch
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.rolled_tube import RolledTube, tube_of
+from twin.live.certificate.set_parts import SetParts
 from twin.live.observer.rollback import Path, Pull, Stretch
 
 PULLS = (3, 4, 5, 2)  # places of u, v, r, psi among an observer's states
@@ -16,11 +18,8 @@ def bounds(w: Waters) -> np.ndarray:
     seen: dict[tuple[str, float], np.ndarray] = {}
     told = []
     for i, group in enumerate(w.groups):
-        # of full ticks all tubes are alike but for the ages that an observer corrects at
-        key = (
-            group.pattern,
-            (group.delay if w.c.inner > 1 else 0.0) if group.pattern in (FULL_RUN, *MIXED) else float(i),
-        )
+        # of full ticks all tubes are alike
+        key = (group.pattern, 0.0 if group.pattern in (FULL_RUN, *MIXED) else float(i))
         if key not in seen:
             seen[key] = _of(w, i)
         told.append(seen[key])
@@ -28,44 +27,58 @@ def bounds(w: Waters) -> np.ndarray:
 
 
 def _of(w: Waters, i: int) -> np.ndarray:
-    tube, h, group = tube_of(w.c), w.c.h, w.groups[i]
+    tube, h = tube_of(w.c), w.c.h
     told = [(*tube.beta, tube.psi)]
-    lasts = w.lasts[:, i] / group.excess.tick
-    if isinstance(tube, RolledTube):
-        paths = _paths(w, i, lasts * h, group.ages)
-        for path in paths:
-            tube.follow(path)
-            told.append((*tube.beta, tube.psi))
-        return np.array(told)
-    for k, last in enumerate(lasts):
+    for k, last in enumerate(w.lasts[:, i] / w.groups[i].excess.tick):
         tube.step(tuple(w.comes[k, :3, i].tolist()), dt=last * h)
         told.append((*tube.beta, tube.psi))
     return np.array(told)
 
 
-def _paths(w: Waters, i: int, lasts_s: np.ndarray, ages: tuple[float, ...]) -> list[Path]:
-    """The way of an observer whose samples of each row are all of one age (0, a half or one tick): each tick
+def along_the_way(w: Waters, was: RunBatch, parts: SetParts) -> tuple[np.ndarray, np.ndarray]:
+    """Of observers that correct at a sample's own time: bounds as above, each run by the way of its estimate;
+    and (K + 1, N) whether that has surely been in the set till then."""
+    assert was.motions is not None
+    told = np.empty((w.ticks + 1, 4, was.motions.shape[-1]))
+    surely = np.ones((w.ticks + 1, told.shape[-1]), bool)
+    for i, group in enumerate(w.groups):
+        ways = Ways(w, i, group.ages)
+        for run in range(i * w.runs, (i + 1) * w.runs):
+            tube = RolledTube(w.c, parts=parts)
+            told[0, :, run] = *tube.beta, tube.psi
+            for k in range(w.ticks):
+                tube.follow(ways.path(k, was.motions[k, :, :, run]))
+                told[k + 1, :, run] = *tube.beta, tube.psi
+                surely[k + 1, run] = surely[k, run] and not tube.left
+    return told, surely
+
+
+class Ways:
+    """The ways of observers whose samples of each row are all of one age (0, a half or one tick): each tick
     anew from the tick before."""
-    ticks_s = np.concatenate(([0.0], np.cumsum(lasts_s)))
-    u, v, r = (0.5 * sum(w.c.operating.ranges[name]) for name in ("u", "v", "r"))
-    cut = 0.5 in ages
-    steps = int(np.ceil(0.5 * w.c.inner)) if cut else w.c.inner
-    paths = []
-    for k in range(w.ticks):
 
-        def pulls(age: float, k: int = k) -> list[Pull]:
-            return [
-                Pull(place, True, 0.0)
-                for place, of_row, comes in zip(PULLS, ages, w.comes[k, :, i], strict=True)
-                if of_row == age and comes
-            ]
+    def __init__(self, w: Waters, i: int, ages: tuple[float, ...]) -> None:
+        lasts_s = w.lasts[:, i] / w.groups[i].excess.tick * w.c.h
+        self.w, self.i, self.ages = w, i, ages
+        self.ticks_s = np.concatenate(([0.0], np.cumsum(lasts_s))).tolist()
 
-        before_s, now_s = float(ticks_s[k]), float(ticks_s[k + 1])
-        motions = [(u, v, r)] * steps
-        stretches = [Stretch(now_s, motions, pulls(0.0), NOWHERE)]
-        if cut:
-            stretches.insert(0, Stretch(now_s - 0.5 * float(lasts_s[k]), motions, pulls(0.5), NOWHERE))
-        if k and pulls(1.0):  # from before the first tick: it is the start
-            stretches.insert(0, Stretch(before_s, [], pulls(1.0), NOWHERE))
-        paths.append(Path(before_s, NOWHERE, stretches))
-    return paths
+    def path(self, k: int, motions: np.ndarray) -> Path:
+        """(steps, 4) the motions of tick k."""
+        steps = [(u, v, r, stream) for u, v, r, stream in motions.tolist()]
+        before_s, now_s = self.ticks_s[k], self.ticks_s[k + 1]
+        half = len(steps) // 2
+        stretches = [
+            Stretch(0.5 * (before_s + now_s), steps[:half], self._pulls(k, 0.5), NOWHERE),
+            Stretch(now_s, steps[half:], self._pulls(k, 0.0), NOWHERE),
+        ]
+        if k and (late := self._pulls(k, 1.0)):  # from before the first tick: it is the start
+            stretches.insert(0, Stretch(before_s, [], late, NOWHERE))
+        return Path(before_s, NOWHERE, stretches)
+
+    def _pulls(self, k: int, age: float) -> list[Pull]:
+        comes = self.w.comes[k, :, self.i].tolist()
+        return [
+            Pull(place, True, 0.0)
+            for place, of_row, there in zip(PULLS, self.ages, comes, strict=True)
+            if of_row == age and there
+        ]

@@ -13,12 +13,14 @@ AXES = range(4)  # u, v, r, psi
 
 class RunBatch(NamedTuple):
     """error (K + 1, 4, N) of the published estimate, [0] as it began; inside (K + 1, N): in the operating set
-    until then; truth (K + 1, 4, N); orders: as they were carried out."""
+    until then; truth (K + 1, 4, N); orders: as they were carried out; motions (K, steps, 4, N): through the
+    water, and the current's speed, as each inner step of the estimate's way began."""
 
     error: np.ndarray
     inside: np.ndarray
     truth: np.ndarray
     orders: Orders
+    motions: np.ndarray | None = None
 
 
 def sail(w: Waters, orders: Orders, greedy: bool = False) -> RunBatch:
@@ -46,7 +48,8 @@ def sail(w: Waters, orders: Orders, greedy: bool = False) -> RunBatch:
             orders.age[k] = follow.least(truth, k, side, error[k])
         error[k + 1] = follow.step(k, inputs, dt, truth, orders) - truth[2 * k + 2]
         inside[k + 1] = inside[k] & w.within(half, x)
-    return RunBatch(error, inside, truth[::2], orders)
+    motions = follow.motions if isinstance(follow, RolledObservers) else None
+    return RunBatch(error, inside, truth[::2], orders, motions)
 
 
 def along(path: np.ndarray, at: np.ndarray, axis: int, last: int) -> np.ndarray:
@@ -116,6 +119,7 @@ class RolledObservers:
         n = orders.psi.size
         self.share = w.c.K[0] * w.c.h
         self.before = np.empty((w.ticks + 1, 4, n))  # the estimate of each tick, none of whose samples came
+        self.motions = np.empty((w.ticks, 2 * self.half_steps, 4, n))
         # samples by half ticks, NaN where none came
         self.samples = np.full((2 * w.ticks + 1, 4, n), np.nan)
 
@@ -135,7 +139,8 @@ class RolledObservers:
             self.samples[place, i, run] = np.where(received[i] & (place > 0), value, kept)
         x = self._pulled(self.before[k], 2 * k)
         for half in (1, 2):
-            for _ in range(self.half_steps):
+            for j in range(self.half_steps):
+                self.motions[k, (half - 1) * self.half_steps + j] = w.through_water(x)
                 x = w.predicted(x, inputs, 0.5 * dt / self.half_steps)
             if half == 2:
                 self.before[k + 1] = x

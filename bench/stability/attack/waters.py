@@ -30,7 +30,9 @@ class Waters:
         rng = np.random.default_rng([seed, 7])
         self.inverse = np.array([core.accelerations(*row, model.c) for row in c3.IDENTITY]).T  # M^-1
         self.true = replace(model, residual=lambda s: Force(*self._push))
-        self.twin = Confined.to(replace(model, residual=lambda s: Force(*self._learned)), c.operating)
+        told = replace(model, residual=lambda s: Force(*self._learned))
+        # the loop does not clip, and what goes part by part of the set counts on that
+        self.twin = told if c.inner > 1 else Confined.to(told, c.operating)
         self.known = model
         self.limit = np.array(c.disturbance.at(0.0))[:, None] * self._by_run(lambda g: g.excess.force)
         self.stated = np.array([*c.noise, c.heading_noise])[:, None]  # and where errors begin
@@ -113,6 +115,18 @@ class Waters:
         middle = self.twin.nu_dot(Situation(u=a, v=b, r=c, psi=psi + 0.5 * h * r, **inputs))
         turned = r + h * middle.r
         return np.array([u + h * middle.u, v + h * middle.v, turned, psi + 0.5 * h * (r + turned)])
+
+    def through_water(self, x: np.ndarray) -> np.ndarray:
+        """(4, N) of (u, v, r, psi): the motion through the water, and the current's speed."""
+        water = self.known.water(Situation(psi=x[3]))
+        return np.array([x[0] - water.u, x[1] - water.v, x[2], np.hypot(water.u, water.v)])
+
+    def kept_inside(self, motions: np.ndarray | None) -> np.ndarray:
+        """(K + 1, N) whether estimates of such motions (K, steps, 4, N) have been in the operating set."""
+        assert motions is not None
+        low, high = np.array([self.c.operating.ranges[name] for name in PLACES[:3]]).T[:, None, :, None]
+        good = np.all((low <= motions[:, :, :3]) & (motions[:, :, :3] <= high), axis=(1, 2))
+        return np.concatenate((good[:1], np.logical_and.accumulate(good, axis=0)))
 
     def within(self, *states: State) -> np.ndarray:
         """(N,) whether all of these motions lie in the operating set."""

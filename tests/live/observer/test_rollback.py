@@ -118,16 +118,22 @@ def test_a_promise_that_does_not_follow_is_not_believed(of_boat):
 
 
 def test_the_tube_settles_at_the_bound_of_the_certificate(of_boat):
-    """Test: every axis sampled once a period, a period late. Expected: E of the theorem."""
-    tube, now = RolledTube(of_boat), 0.0
-    still, state = [(1.2, 0.0, 0.0)] * 10, (0.0,) * 6
-    full = [Pull(i, True, 0.0) for i in (2, 3, 4, 5)]
-    for _ in range(200):
-        then, now = now, now + of_boat.h
-        beta = tube.follow(
-            Path(then, state, [Stretch(then, [], full, state), Stretch(now, still, [], state)]), 0.0, True
-        )
-    assert beta == pytest.approx(of_boat.bound, rel=1e-6)
+    """Test: every axis sampled once a period, a period late. Expected: outside the set, where nothing better is
+    known, E of the theorem; at sea speed less than half of it in yaw, by the slopes and the damping there."""
+    state, full = (0.0,) * 6, [Pull(i, True, 0.0) for i in (2, 3, 4, 5)]
+
+    def settled(u):
+        tube, now, still = RolledTube(of_boat), 0.0, [(u, 0.0, 0.0, 0.0)] * 10
+        for _ in range(200):
+            then, now = now, now + of_boat.h
+            way = [Stretch(then, [], full, state), Stretch(now, still, [], state)]
+            beta = tube.follow(Path(then, state, way), 0.0, True)
+        return beta, tube.left
+
+    whole, left = settled(9.0)
+    assert left and whole == pytest.approx(of_boat.bound, rel=1e-6)
+    (u, v, r), left = settled(1.2)
+    assert not left and u < 0.75 * whole[0] and v < 0.7 * whole[1] and r < 0.45 * whole[2]
 
 
 def test_a_sample_that_does_not_count_widens_the_bound_by_what_it_moved(of_boat):

@@ -59,7 +59,7 @@ __all__ = [
     "usual_noise",
 ]
 
-VERSION = 7
+VERSION = 8
 
 
 @dataclass(frozen=True)
@@ -150,9 +150,7 @@ class Certificate(Promise):
         if told.pop("sha256") != digest(told):
             raise ValueError("certificate changed since it was written")
         table = _tuples(told)
-        plant = table.pop("plant")
-        ranges = plant.pop("operating")["ranges"]
-        table["plant"] = Plant(**plant, operating=OperatingSet(ranges))
+        table["plant"] = Plant.of_table(table["plant"])
         table["disturbance"] = Disturbance(**table["disturbance"])
         table["step"] = Recursion(**table["step"])
         found = cls(**table)
@@ -168,7 +166,7 @@ class Certificate(Promise):
         bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
         noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
         told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
-        return positive and noisy and self.operating.whole and all(told)
+        return positive and noisy and self.plant.whole and all(told)
 
 
 def certify(
@@ -206,7 +204,8 @@ def certify(
     d = _bound_of(disturbance) or usual_disturbance(model)
     d = replace(d, calm=c3.add(d.calm, saturation))
     numbers = movable(model.effects, model.ship) if adapted else ()
-    plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), c3.row(noise)
+    operating = operating_set or of_ship(model)
+    plant, noise = plant_of(model, operating, h, numbers, inner > 1), c3.row(noise)
     if inner > 1:
         K = FULL_GAIN / h
     elif K is None:

@@ -110,9 +110,13 @@ def beyond_first(a: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], .
     """
     axes = range(len(a))
     term, found = a, tuple(tuple(0.0 for _ in axes) for _ in axes)
+    greatest = max(map(total, a))
     for k in range(2, 40):
         term = tuple(tuple(total(row[n] * a[n][j] for n in axes) / k for j in axes) for row in term)
-        found = tuple(
-            tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(found, term, strict=True)
+        before, found = (
+            found,
+            tuple(tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(found, term, strict=True)),
         )
+        if found == before and k > greatest:  # nor do the smaller ones that come
+            break
     return found

@@ -83,6 +83,34 @@ def slopes(
 
     They hold as well while effects are switched off for want of an input, and wherever in their boxes
     `numbers` of the effects are."""
+    k = WIDTH + len(numbers)
+    found, boxes = _by_motion(model, ranges, pieces, numbers)
+    total = _with_the_stream(found, ranges, k)
+    lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
+    return Slopes.of(lo, hi, boxes, numbers)
+
+
+def slopes_by_cell(
+    model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()
+) -> tuple[tuple[np.ndarray, ...], np.ndarray, np.ndarray, tuple[float, ...]]:
+    """The same in each cell of motions, without a current: edges of the cells along u, v, r in SI, each (n,)
+    with n one more than its pieces; lo, hi (3, 5, N) of nu_dot [m/s2, m/s2, rad/s2] and of its slopes with
+    (u, v, r, psi), N the cells, r runs fastest; `moved` all over them."""
+    k = WIDTH + len(numbers)
+    found, boxes = _by_motion(model, ranges, pieces, numbers)
+    edges = tuple(_edges(*ranges[name], pieces.get(name, 1)) for name in NU)
+    cells = int(np.prod([len(e) - 1 for e in edges]))
+    lo = np.array([np.broadcast_to(of(x).lo, cells) for x in found]).reshape(3, k, cells)
+    hi = np.array([np.broadcast_to(of(x).hi, cells) for x in found]).reshape(3, k, cells)
+    least, most = lo.min(axis=2).ravel().tolist(), hi.max(axis=2).ravel().tolist()
+    return edges, lo[:, :WIDTH], hi[:, :WIDTH], Slopes.of(least, most, boxes, numbers).moved
+
+
+def _by_motion(
+    model: Model, ranges: Ranges, pieces: Mapping[str, int], numbers: Sequence[Movable]
+) -> tuple[list[Any], int]:
+    """Rates and slopes (3 k) in each cell of motions, whatever the inputs, without a current; and of how many
+    boxes."""
     model, ranges = _seen_from_the_water(model, ranges)
     model = anywhere(model, numbers)
     k = WIDTH + len(numbers)
@@ -100,9 +128,7 @@ def slopes(
             total = [
                 a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)
             ]
-    total = _with_the_stream(total, ranges, k)
-    lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
-    return Slopes.of(lo, hi, boxes, numbers)
+    return total, boxes
 
 
 def anywhere(model: Model, numbers: Sequence[Movable]) -> Model:

@@ -11,6 +11,7 @@ a tick that lasted longer than the certified period).
 """
 
 from collections import deque
+from math import inf
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
@@ -96,6 +97,10 @@ class Tube:
         `pulled` and `turned` the estimate by. Nothing in it looks back, but on bounds from before `since_s`
         it does not rely."""
         return add(self._alone[0], pulled), self._alone[1] + turned
+
+    def rests_on(self, since_s: float) -> bool:
+        """Whether the bound rests on nothing from before that time; here the window sees to it."""
+        return since_s < inf
 
     def know(self, most: Three, psi: float) -> None:
         """A bound of the estimate's error that holds now, whatever this tube says: the next step carries it,
@@ -249,7 +254,9 @@ class Tube:
             min(r.kept[0][1], third.kept[0][1]),
         )
 
-    def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
+    def outside(
+        self, s: Situation, within: Three | None = None, dt: float = 0.0, on_the_way: bool = True
+    ) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
         it. `within`: how far it may be from the estimate, where that is known better than by the tube; dt:
         how long the last tick was, if longer than a sample."""

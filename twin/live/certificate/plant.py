@@ -4,11 +4,13 @@ and how it is disturbed.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate.comparison_systems import AXES, Matrix, Row
+from twin.live.certificate.set_cells import IN_CELLS, Cells, of_slopes
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
 from twin.physics import core
@@ -35,6 +37,19 @@ class Plant:
     operating: OperatingSet
     bend: tuple[tuple[float, ...], ...] = ()
     moved: Row = (0.0, 0.0, 0.0)
+    cells: Cells | None = None  # the same, part by part of the set
+
+    @classmethod
+    def of_table(cls, table: dict[str, Any]) -> "Plant":
+        """From its fields by name, those of set and cells as tables."""
+        cells = table["cells"] and Cells(**table["cells"])
+        return cls(**{**table, "operating": OperatingSet(**table["operating"]), "cells": cells})
+
+    @property
+    def whole(self) -> bool:
+        """Whether set and cells have all of their numbers."""
+        cells_whole = self.cells is None or self.cells.whole(self.operating.reach)
+        return self.operating.whole and cells_whole
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""
@@ -56,12 +71,12 @@ class Plant:
         whole = [[float(i == j) + self.h * rows[i][j] + self.bend[i][j] for j in range(4)] for i in range(4)]
         return tuple(tuple(total(whole[i][k] * rows[k][j] for k in range(4)) for j in range(4)) for i in AXES)
 
-    def growth(self) -> Matrix:
+    def growth(self, clipped: bool = True) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may
-        switch damping off.
+        switch damping off. Where nothing is clipped damping counts.
         """
-        size = self.magnitude()
-        return c3.matrix(lambda i, j: max(self.hi[i][i], 0.0) if i == j else size[i][j])
+        size, least = self.magnitude(), 0.0 if clipped else -inf
+        return c3.matrix(lambda i, j: max(self.hi[i][i], least) if i == j else size[i][j])
 
 
 @dataclass(frozen=True)
@@ -94,13 +109,20 @@ class Disturbance:
         return noise + self.motion[3] * H_s
 
 
-def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = ()) -> Plant:
+def plant_of(
+    model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = (), by_cell: bool = False
+) -> Plant:
     """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second
     for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes.
+    `by_cell`: part by part of the set as well.
     """
-    from twin.live.certificate.enclosure import anywhere, slopes
+    from twin.live.certificate.enclosure import PIECES, anywhere, slopes, slopes_by_cell
 
     steep = slopes(model, operating.ranges, numbers=numbers)
+    cells = None
+    if by_cell:
+        found = slopes_by_cell(model, operating.reach, PIECES | IN_CELLS, numbers)
+        cells = of_slopes(*found[:3], c3.row(found[3]))
     unit = [core.accelerations(*row, anywhere(model, numbers).c) for row in c3.IDENTITY]
     made = Plant(
         lo=c3.matrix(lambda i, j: steep.lo[i][j]),
@@ -111,6 +133,7 @@ def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[
         h=h,
         operating=operating,
         moved=c3.row(steep.moved),
+        cells=cells,
     )
     return made.at_period(h)
 

@@ -67,10 +67,10 @@ class Recursion:
         return c3.diagonal(c3.add(self.pushed, self.again))
 
 
-def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Recursion:
-    """The matrices of one sample for one gain; `extra`: see self_regressor."""
+def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None, clipped: bool = True) -> Recursion:
+    """The matrices of one sample for one gain; `extra`: see self_regressor; `clipped`: see Plant.growth."""
     h, bend, more = plant.h, plant.bend, extra or c3.scaled(0.0, c3.IDENTITY)
-    size, growth = c3.plus(plant.magnitude(), more), c3.plus(plant.growth(), more)
+    size, growth = c3.plus(plant.magnitude(), more), c3.plus(plant.growth(clipped), more)
     pull = c3.scaled_row(h, K)
     keep = c3.row(abs(1.0 - p) for p in pull)
     change = c3.matrix(lambda i, j: h * size[i][j] + bend[i][j])

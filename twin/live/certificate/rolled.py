@@ -33,10 +33,10 @@ FOUR = range(4)
 class InnerStep:
     """One inner step of the errors of (u, v, r, psi): M, what a force does, what the step itself costs."""
 
-    def __init__(self, plant: Plant) -> None:
-        """plant: at the inner step's length."""
+    def __init__(self, plant: Plant, clipped: bool = True) -> None:
+        """plant: at the inner step's length; `clipped`: see Plant.growth."""
         h = plant.h
-        V = recursion(plant, (1e-9 / h,) * 3, (0, 0, 0)).V
+        V = recursion(plant, (1e-9 / h,) * 3, (0, 0, 0), clipped=clipped).V
         push, calm = pushed(plant, 0.0)
         turned = [h * plant.heading[i] + plant.bend[i][3] for i in AXES]
         half = 0.5 * h

@@ -5,7 +5,7 @@ moved), from the moment that no sample of the tick changes; so it holds whatever
 """
 
 from collections import deque
-from math import ceil
+from math import hypot
 from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
@@ -13,8 +13,9 @@ from twin.live.certificate.comparison_systems import add, scaled_row
 from twin.live.certificate.observer_tube import NONE, NOTHING, UNKNOWN, Three, Tube, halves
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
+from twin.live.certificate.set_parts import SetPart, SetParts
 from twin.live.observer.operating import NU, outside_in_words
-from twin.live.observer.rollback import KEPT_S, Path, State
+from twin.live.observer.rollback import KEPT_S, Motion, Path, State
 from twin.physics.state import Situation
 
 Four = tuple[float, float, float, float]
@@ -35,10 +36,12 @@ class RolledTube(Tube):
     """As Tube; `follow` in the place of `step`. Whether it was inside the set is asked of every inner step
     of the way."""
 
-    def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
+    def __init__(
+        self, certificate: Certificate, start: Three | None = None, parts: SetParts | None = None
+    ) -> None:
+        """`parts`: those of another tube of the certificate."""
         self.certificate = certificate
-        # what a sample may look back on is inside, before anything is promised
-        self.window = ceil(KEPT_S / certificate.h) + 1
+        self.window = 2  # ticks; what the way goes back to is looked at in each
         self.periods = of_certificate(certificate)
         self.oldest_s = KEPT_S
         self.beta = certificate.noise if start is None else start
@@ -46,15 +49,24 @@ class RolledTube(Tube):
         self._one = InnerStep(inner(certificate.plant, certificate.inner))
         self._length = certificate.h / certificate.inner
         self._share = certificate.K[0] * certificate.h
-        self._limits = [certificate.operating.ranges[name] for name in NU]
         self._nodes: deque[Node] = deque()
         self._from_s = float("-inf")  # from where the last path went
         self._left: str | None = None  # what left the set on the way, or may have
         self.distrusted = NONE  # rows of nu of which no sample counts for the time being
         # what samples that did not count moved each row by; 0 where a part of the way was gone again
         self.uncounted: list[float] = [0.0, 0.0, 0.0]
+        cells = certificate.plant.cells
+        assert cells is not None  # the certificate of an observer with inner steps
+        self.parts = parts or SetParts(certificate, cells)
+        self._set = self.parts.operating
+        self._part: SetPart | None = None  # in which the ship surely is; None: it may be outside
         self._sea = (-1.0, -1.0)
         self._look(0.0, True)
+
+    @property
+    def left(self) -> bool:
+        """Whether the last way may have left the set."""
+        return self._left is not None
 
     @property
     def widest(self) -> Three:
@@ -65,19 +77,20 @@ class RolledTube(Tube):
     def carried(self, pulled: Three, turned: float, since_s: float) -> tuple[Three, float]:
         """The bound as it is, for a sample corrects its own time and nothing looks back, if the path began
         no earlier than `since_s`; else one that says nothing."""
-        if self._from_s < since_s:
-            return UNKNOWN
-        return self.beta, self.psi
+        return (self.beta, self.psi) if self.rests_on(since_s) else UNKNOWN
+
+    def rests_on(self, since_s: float) -> bool:
+        """Whether the last way began no earlier than that."""
+        return self._from_s >= since_s
 
     def know(self, most: Three, psi: float) -> None:
         """Of this and what the tube says the lesser holds, row by row, and the next way begins at it. A
         sample takes away so much of an error that only in yaw, and where samples are seldom, there is much
-        between them."""
-        u, v, r = self.beta
-        self.beta = min(u, most[0]), min(v, most[1]), min(r, most[2])
-        self.psi = min(self.psi, psi)
+        between them. The bound of now stays the tube's: it forgives a sample that is off by more than n."""
         if self._nodes:
-            self._nodes[-1] = self._nodes[-1]._replace(bound=(*self.beta, self.psi))
+            (u, v, r), last = self.beta, self._nodes[-1]
+            known = min(u, most[0]), min(v, most[1]), min(r, most[2]), min(self.psi, psi)
+            self._nodes[-1] = last._replace(bound=known)
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open; before now it was at most its way from there."""
@@ -88,7 +101,7 @@ class RolledTube(Tube):
         if not self._nodes:
             return
         bound, last = (*self.beta, self.psi), self._nodes[-1]
-        way = (*self.way, max(map(abs, self._limits[2])))
+        way = (*self.way, max(map(abs, self._set.ranges["r"])))
         old, self._nodes = self._nodes, deque()
         for node in old:
             at: Four = tuple(  # type: ignore[assignment]
@@ -109,8 +122,11 @@ class RolledTube(Tube):
         if not nodes:  # a new start
             nodes.append(Node(path.start_s, x, of_state(path.start), x))
         for time_s, motions, pulls, after in path.stretches:
-            for motion in motions:
-                self._left = self._left or self._outside(motion, x)
+            for k, motion in enumerate(motions):
+                if not (k and self._part and self._part.holds(motion, x)):
+                    self._part = self._around(motion, x)
+                if self._part is None:
+                    self._left = self._left or self._outside(motion, x)
                 x = self._on(x)
             before = x
             for state, full, moved in pulls:
@@ -124,25 +140,35 @@ class RolledTube(Tube):
         self.beta, self.psi = x[:3], x[3]
         return self.beta
 
-    def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
+    def outside(
+        self, s: Situation, within: Three | None = None, dt: float = 0.0, on_the_way: bool = True
+    ) -> str | None:
         """What left the set on the way to now, or does now."""
-        return self._left or self.certificate.operating.outside(
-            s, add(within or self.beta, scaled_row(self._length, self.way))
-        )
+        if on_the_way and self._left:
+            return self._left
+        within = within or self.beta
+        now: Motion = (s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r))  # type: ignore[assignment, operator]
+        part = self._around(now, (*within, self.psi))
+        way = part.way if part else self.way
+        return self._set.outside(s, add(within, scaled_row(self._length, way)))
 
-    def _outside(self, motion: Three, x: Four) -> str | None:
+    def _around(self, motion: Motion, x: Four) -> SetPart | None:
+        """The part of the set in which the ship surely is during a step from that motion."""
+        return self.parts.around(motion, x, self._force, self._part)
+
+    def _outside(self, motion: Motion, x: Four) -> str:
         """What may be outside as an inner step begins, or within it."""
-        for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
-            most = b + self._length * w
+        ranges = self._set.ranges
+        for name, value, b, w in zip(NU, motion, x, self.way, strict=False):
+            most, (low, high) = b + self._length * w, ranges[name]
             if not low + most <= value <= high - most:
                 return outside_in_words(name, value, most, low, high)
-        return None
+        return outside_in_words("stream", motion[3], 0.0, *ranges["stream"])
 
     def _on(self, x: Four) -> Four:
         u, v, r, psi = x
-        a, b, c, e = [
-            min(m0 * u + m1 * v + m2 * r + m3 * psi + d, NOTHING) for m0, m1, m2, m3, d in self._rows
-        ]
+        rows = self._part.rows if self._part else self._rows
+        a, b, c, e = [min(m0 * u + m1 * v + m2 * r + m3 * psi + d, NOTHING) for m0, m1, m2, m3, d in rows]
         return a, b, c, e
 
     def _pulled(self, x: Four, i: int, full: bool, moved: float) -> Four:
@@ -170,8 +196,9 @@ class RolledTube(Tube):
         self.noise: Three = c.disturbance.noise(c.noise, H_s)
         self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
         self._noise: Four = (*self.noise, self.heading_noise)
-        self.way: Three = way(c.plant, force)
-        d = self._one.pushes(force, self.way[2])
+        self._force = force
+        self.way: Three = self.parts.everywhere.under(force).way
+        d = self._one.pushes(force, way(c.plant, force)[2])
         self._rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))
 
 

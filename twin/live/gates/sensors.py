@@ -5,7 +5,7 @@ Every channel has its gate; what no instrument measures is derived where that is
 derived.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import degrees, inf, pi
 
 from twin.live.gates.actuator_rates import gates_of
@@ -239,6 +239,14 @@ class Sensors:
     def loud(self) -> list[str]:
         """The channels that are much noisier than they used to be, in words."""
         return [f"{name}: far noisier than it was; it weighs less" for name in sorted(self._noise.loud)]
+
+    def jumped(self, names: Iterable[str], now_s: float) -> str:
+        """The first of these channels whose last sample was refused as a jump, in words: what is used is the
+        one before; "" when there is none."""
+        for name in names:
+            if self.gates[name].quality(now_s) is Quality.JUMP:
+                return f"{name} jumped, and is not believed yet"
+        return ""
 
 
 def motion_of(own: Estimate) -> dict[str, float]:

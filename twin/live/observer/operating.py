@@ -20,6 +20,8 @@ from twin.physics.state import Rates, Situation
 NU = ("u", "v", "r")
 MOTION = (*NU, "stream")
 EVERYTHING = (-inf, inf)
+TURNING = ("v", "r")
+FARTHER = 1.6  # 0.4 U_0 aside, 0.8 U_0/L: hulls are tested to 20 or 25 deg of drift and to 0.9
 WORDS = {
     "u": "surge speed through water",
     "v": "sway speed through water",
@@ -67,6 +69,13 @@ class OperatingSet:
         return all(name in self.ranges for name in NU) and all(
             -inf < least <= greatest < inf for least, greatest in self.ranges.values()
         )
+
+    @property
+    def reach(self) -> Mapping[str, tuple[float, float]]:
+        """The ranges to which a live bound may reach that goes by the slopes where the ship is: with the sway
+        and turning of a hard turn, which need not make it wide at all other times."""
+        wide = {name: self.ranges[name] for name in TURNING}
+        return {**self.ranges, **{name: (FARTHER * lo, FARTHER * hi) for name, (lo, hi) in wide.items()}}
 
     def clip(self, nu: tuple[float, float, float]) -> tuple[float, float, float]:
         """The motion through water inside the set that is nearest (floats or arrays)."""

@@ -9,7 +9,7 @@ since is corrected again on the way. `path` says what was done, for the certific
 
 from collections import deque
 from copy import copy
-from math import ceil, cos, pi, sin
+from math import ceil, cos, hypot, pi, sin
 from typing import NamedTuple
 
 from twin.live.observer.dynamics import KnownDynamics
@@ -28,6 +28,7 @@ FROM = 2.0 * LENGTH  # a longer period asks for inner steps
 ROUNDING = 1e-6
 
 State = tuple[float, ...]
+Motion = tuple[float, float, float, float]  # (u, v, r) through the water, and the current's speed
 
 
 def inner_steps(ship: Ship, period_s: float) -> int:
@@ -57,11 +58,11 @@ class Pull(NamedTuple):
 
 
 class Stretch(NamedTuple):
-    """The motion through the water (u, v, r) as each inner step to this time began, what was corrected there,
-    and the estimate after that."""
+    """The motion through the water as each inner step to this time began, what was corrected there, and the
+    estimate after that."""
 
     time_s: float
-    motions: list[tuple[float, float, float]]
+    motions: list[Motion]
     pulls: list[Pull]
     after: State
 
@@ -201,9 +202,9 @@ class RollBack(Observer):
         doubt.learn(min(max(self._gap, -sample.limit), sample.limit))
         doubt.shrink(sample.share)
 
-    def _run(self, x: State, t: float, to_s: float) -> tuple[State, list[tuple[float, float, float]]]:
+    def _run(self, x: State, t: float, to_s: float) -> tuple[State, list[Motion]]:
         """The model from t to to_s, under what drove it then."""
-        motions: list[tuple[float, float, float]] = []
+        motions: list[Motion] = []
         drives = self._drives
         for k, drive in enumerate(drives):
             until_s = min(drives[k + 1].time_s if k + 1 < len(drives) else to_s, to_s)
@@ -211,18 +212,19 @@ class RollBack(Observer):
                 count = max(ceil((until_s - t) / self.inner_s - ROUNDING), 1)
                 h = (until_s - t) / count
                 for _ in range(count):
-                    x = self._one(x, drive, h)
-                    s = drive.situation
-                    motions.append((s.u_r, s.v_r, s.r))  # type: ignore[arg-type]
+                    x, motion = self._one(x, drive, h)
+                    motions.append(motion)
                 t = until_s
         return x, motions
 
-    def _one(self, x: State, drive: Inputs, h: float) -> State:
-        """One inner step."""
+    def _one(self, x: State, drive: Inputs, h: float) -> tuple[State, Motion]:
+        """One inner step, and the motion through the water as it began."""
         north, east, psi, u0, v0, r0 = x
         s = drive.situation
         s.x, s.y, s.psi, s.u, s.v, s.r = x
-        rates: Rates = drive.physics.mean_rates(s, drive.physics.forces(s), drive.learned, h)
+        forces = drive.physics.forces(s)
+        motion: Motion = (s.u_r, s.v_r, r0, hypot(u0 - s.u_r, v0 - s.v_r))  # type: ignore[operator, assignment]
+        rates: Rates = drive.physics.mean_rates(s, forces, drive.learned, h)
         speed, _, turning = self.most
         u = min(max(u0 + rates.u * h, -speed), speed)
         v = min(max(v0 + rates.v * h, -speed), speed)
@@ -236,4 +238,4 @@ class RollBack(Observer):
             u,
             v,
             r,
-        )
+        ), motion
