@@ -7,7 +7,6 @@ import sys
 import pytest
 
 from twin import cli
-from twin.commands.next_command import after_diagnose
 from twin.errors import DataError
 
 
@@ -82,15 +81,3 @@ def test_what_cannot_be_written_is_said_before_the_work_is_done(words, tmp_path,
     monkeypatch.chdir(tmp_path)
     assert cli.main(["calibrate", "nowhere.mcap", "--ship", "kvlcc2", *words]) == 1
     assert f"Choose another place with {words[-2]}." in said(capsys)
-
-
-@pytest.mark.parametrize("verdict", ["undecided", "unknown"])
-def test_what_stays_open_is_asked_of_more_voyages_together_and_what_does_not_is_looked_at(verdict):
-    result = {"verdict": verdict, "next_manoeuvre": None, "answer": {"lasting": []}}
-    assert after_diagnose(["a.mcap"], "s.toml", result).startswith(
-        "twin diagnose a.mcap ANOTHER-DAY.mcap --ship s.toml"
-    )
-    closed = after_diagnose(["a.mcap"], "s.toml", result | {"verdict": "nothing_missing"})
-    assert closed.startswith("twin compare a.mcap")
-    sail = after_diagnose(["a.mcap"], "s.toml", result | {"next_manoeuvre": {"manoeuvre": "zigzag"}})
-    assert sail.startswith("sail zigzag")

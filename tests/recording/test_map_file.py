@@ -101,7 +101,7 @@ def test_a_map_that_asks_for_a_column_that_is_not_there(columns, write_csv, refu
     by = parse_map({"columns": {"rudder_angle_deg": 30}}, "m.toml")
     refused(write_csv(columns), "has 9 columns, so there is no column 30", by=by)
     by = parse_map({"columns": {"rudder_angle_deg": "RUD"}}, "m.toml")
-    refused(write_csv(columns), "has no column 'RUD'", by=by)
+    refused(write_csv(columns), "has no column 'RUD'", "optional = true", by=by)
 
 
 def test_an_optional_column_may_be_absent_and_any_other_may_not(columns, write_csv, refused):

@@ -9,8 +9,7 @@ from twin.physics.ship import load
 
 
 def after_import(voyage: str, ship: str | None) -> str:
-    """A ship that was never calibrated is, on its reference voyages, before anything is compared with it;
-    whether this is one, nobody knows."""
+    """The comparison; before it a calibration, where the ship never had one."""
     if ship and "structural" not in load(ship, arrays=False).notes:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
@@ -43,22 +42,19 @@ def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) 
 
 
 def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
-    """What to sail where the voyages cannot tell, or more voyages; and what to add where a lasting cause was
-    named."""
-    paths, sail = " ".join(voyages), ""
-    if result["next_manoeuvre"]:
-        sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
+    """What to sail, or to ask together, where voyages cannot tell; what to add where one may be."""
+    paths, then = " ".join(voyages), result["next_manoeuvre"]
+    sail = then and f"sail {then['manoeuvre']}, then twin diagnose with that voyage too"
+    now = "" if sail else f"twin compare {paths} --ship {ship} --report compare.html"
     if lasting := result["answer"]["lasting"]:
-        add = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
-        return f"{sail}; or now: {add}" if sail else add
-    if sail or result["verdict"] not in ("undecided", "unknown"):
-        return sail or f"twin compare {paths} --ship {ship} --report compare.html"
-    more = f"twin diagnose {paths} ANOTHER-DAY.mcap --ship {ship}"
-    return f"{more} (a voyage of another day and on other courses, asked together with this, tells more)"
+        now = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
+    elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
+        now = f"twin diagnose {paths} OTHER-DAY.mcap --ship {ship}: voyages together tell more than one"
+    return "; or now: ".join(filter(None, (sail, now)))
 
 
 def add_typed(args: argparse.Namespace) -> str:
     """What was typed, for the page."""
     command = f"twin add {' '.join(args.effects)} --ship {args.ship} --voyage {' '.join(args.voyage)}"
-    held_out = f" --held-out {' '.join(args.held_out)}" * bool(args.held_out)
-    return f"{command}{held_out}{' --cross-validated' * args.cross_validated} -o {args.output}"
+    command += f" --held-out {' '.join(args.held_out)}" * bool(args.held_out)
+    return f"{command}{' --cross-validated' * args.cross_validated} -o {args.output}"

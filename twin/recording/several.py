@@ -123,7 +123,7 @@ def file_of(parts: Sequence[Part], name: str, c: Column, where: Path) -> int | N
     some = ", ".join(parts[i].path.name for i in holds[:4])
     raise DataError(
         f'{where}: {name}: the column {said} stands in {len(holds)} files ({some}). Say which: file = "..." '
-        "in the map."
+        "in the map. Files that are voyages of their own are imported one at a time."
     )
 
 

@@ -14,6 +14,7 @@ from twin.recording.formats.lines import Unpacked, opened
 from twin.recording.mapping import SEPARATORS, Key, Layout
 
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d*(?:[eE][-+]?\d+)?")
+LACKING = "In the map: its name in this file, or optional = true in its entry where some files lack it."
 COMMENT = ("#", "%", "//")  # what may stand in front of a line of names
 Row = tuple[int, list[str]]  # line in the file, cells
 
@@ -55,7 +56,8 @@ class Sheet:
             )
         if key not in self.names:
             raise DataError(
-                f"{self.path}: has no column {key!r}. Columns: {', '.join(self.names) or 'unnamed'}."
+                f"{self.path}: has no column {key!r}. Columns: {', '.join(self.names) or 'unnamed'}. "
+                + LACKING
             )
         return self.names.index(key)
 

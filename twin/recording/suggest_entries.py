@@ -20,7 +20,7 @@ from twin.recording.suggest_units import (
     unit_of_angle,
     unit_of_turns,
 )
-from twin.recording.suggest_wind import wind_unit
+from twin.recording.suggest_wind import one_wind, whose_wind, wind_unit
 
 FRAMES = {
     "course": ("speed_over_ground_mps", "course_over_ground_deg"),
@@ -106,6 +106,7 @@ def best_guesses(files: Sequence[SeenColumns]) -> Taken:
                 out[found.channel] = (seen, name, found)
     quaternion(files, out)
     at_home(out)
+    one_wind(out)
     return out
 
 
@@ -183,6 +184,7 @@ def by_motion(entries: dict[str, Entry], taken: Taken, time: dict[str, Any]) -> 
     axes(entries, taken, time)
     speed_unit(entries, taken, time)
     turn_unit(entries, taken, time)
+    whose_wind(entries, taken)
     wind_unit(entries, taken, time)
 
 

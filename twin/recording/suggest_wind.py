@@ -1,9 +1,11 @@
-"""The unit of unlabelled wind speeds, by the triangle of true wind, apparent wind and the ship's motion."""
+"""A wind that a table does not say to be true or apparent, and the unit of one that has none: by the other
+column of it, and by the triangle of true wind, apparent wind and the ship's motion."""
 
 from typing import Any
 
 import numpy as np
 
+from twin.recording.formats.name_words import words_of
 from twin.recording.suggest_units import HEADED, SPEED_UNITS, Taken, heading_samples, samples
 
 SIDES_OF_IT = (
@@ -11,6 +13,36 @@ SIDES_OF_IT = (
     ("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
     ("speed_over_ground_mps", "course_over_ground_deg"),
 )
+WHOSE = frozenset(
+    ("true", "tws", "twd", "mwd", "ground", "apparent", "relative", "rel", "aws", "awa", "rws", "rwd")
+)
+TURNED_INTO = (  # a half whose name does not say, the other half, and what the first is then
+    ("true_wind_speed_mps", "apparent_wind_angle_deg", "apparent_wind_speed_mps"),
+    ("true_wind_direction_deg", "apparent_wind_speed_mps", "apparent_wind_angle_deg"),
+)
+
+
+def one_wind(taken: Taken) -> None:
+    """A speed or an angle that does not say of which wind it is, is of the wind that the other column is of:
+    a wind angle is off the bow, so the wind speed beside it is the apparent one."""
+    for half, other, becomes in TURNED_INTO:
+        lone = len([n for pair in SIDES_OF_IT[:2] for n in pair if n in taken]) == 2
+        if lone and half in taken and other in taken and unsaid(taken[half][1]):
+            seen, name, how = taken.pop(half)
+            taken[becomes] = (seen, name, how._replace(channel=becomes))
+
+
+def unsaid(name: str) -> bool:
+    """Whether a column's name leaves open of which wind it is."""
+    return not WHOSE & {*words_of(name)[0]}
+
+
+def whose_wind(entries: dict[str, Any], taken: Taken) -> None:
+    """Asks a person about a speed or a direction that is the apparent wind's only because the other column
+    is."""
+    for name in SIDES_OF_IT[1]:
+        if name in taken and unsaid(taken[name][1]) and "angle" not in words_of(taken[name][1])[0]:
+            entries[name].why.append("apparent, as the other column of the wind is. CONFIRM")
 
 
 def wind_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> None:

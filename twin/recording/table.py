@@ -17,7 +17,7 @@ from twin.errors import DataError
 from twin.recording.formats.binary_tables import Packed
 from twin.recording.formats.fast_csv import LEAST_BYTES, collected
 from twin.recording.mapping import Key, Layout
-from twin.recording.sheet import Row, Sheet, find_encoding, head_of, open_text
+from twin.recording.sheet import LACKING, Row, Sheet, find_encoding, head_of, open_text
 
 ROWS_AT_ONCE = 20_000
 EMPTY = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
@@ -128,7 +128,8 @@ def packed_name(packed: Packed, key: Key) -> str:
     """A column's name, by name or by number from 1. DataError: there is none."""
     if not has(packed, key):
         raise DataError(
-            f"{packed.path}: has no column {key!r}. Columns: {', '.join(packed.names) or 'unnamed'}."
+            f"{packed.path}: has no column {key!r}. Columns: {', '.join(packed.names) or 'unnamed'}. "
+            + LACKING
         )
     return packed.names[key - 1] if isinstance(key, int) else key
 

@@ -15,10 +15,12 @@ from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
+from twin.study.calibration.calibration_record import sourced
 from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.usual import significantly_there
 from twin.study.estimation.innovations import NoiseModel
+from twin.study.reference.derivatives import KEPT
 from twin.study.reference.sailed import sailed
 
 
@@ -170,7 +172,16 @@ def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_th
         result["antenna"]["ahead"]["value"] == antenna.ahead
         and "measured there" in ship.notes["effects"]["AntennaOffset"]["ahead"]["source"]
     )
+    above = ship.notes["effects"]["AntennaOffset"]["above"]["source"]
+    assert ("above" in result["antenna"]) == ("measured there" in above)
     assert "AntennaOffset" in ship.notes["structural"]["beside_effects"]
+
+
+def test_a_number_that_the_voyages_left_as_it_was_is_not_said_to_be_measured():
+    """Test: an antenna's height where no roll was recorded, and its place ahead, ten times as sure as before.
+    Expected: the first keeps its prior in the ship file's words, the second was measured."""
+    assert sourced(0.9, 0.9, "measured there") == KEPT
+    assert sourced(3.0, 0.3, "measured there").endswith(": measured there")
 
 
 def on_a_mast(v, height):

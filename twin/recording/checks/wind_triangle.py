@@ -16,6 +16,10 @@ from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 AGREES = 0.35
 EXPLAINS = 0.5
 LIGHT_MPS = 2.0
+WINDS = (
+    ("true_wind_speed_mps", "true_wind_direction_deg"),
+    ("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
+)
 Pair = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -98,11 +102,22 @@ MISTAKES: tuple[tuple[str, str, Callable[..., tuple[np.ndarray, np.ndarray]]], .
 def wind(view: VoyageView) -> Check:
     """The triangle, when both winds were recorded; else what one of them says alone."""
     name = "wind"
-    true = view.voyage.has("true_wind_speed_mps", "true_wind_direction_deg")
-    apparent = view.voyage.has("apparent_wind_speed_mps", "apparent_wind_angle_deg")
+    true, apparent = (view.voyage.has(*pair) for pair in WINDS)
     if not true and not apparent:
-        return cannot_tell(name, "no wind was recorded, so an effect of wind cannot be judged.")
+        return cannot_tell(name, none_whole(view))
     return triangle(name, view) if true and apparent else alone(name, view, true)
+
+
+def none_whole(view: VoyageView) -> str:
+    """What is lacking of the wind: all of it, or the other half of a speed or an angle that stands alone."""
+    for pair in WINDS:
+        for half, other in (pair, pair[::-1]):
+            if view.voyage.has(half):
+                return (
+                    f"{half} was recorded without {other}, so an effect of wind cannot be judged. True and "
+                    "apparent wind are two pairs: look in the map whether one column is given as the other's."
+                )
+    return "no wind was recorded, so an effect of wind cannot be judged."
 
 
 def triangle(name: str, view: VoyageView) -> Check:

@@ -76,7 +76,8 @@ ENGLISH: dict[str, str] = {
     "stb": "starboard", "stbd": "starboard", "sb": "starboard", "right": "starboard", "rechts": "starboard",
     "centre": "center", "middle": "center", "winkel": "angle", "vinkel": "angle", "hdgt": "hdt",
     "spd": "speed", "dir": "direction", "ang": "angle", "vel": "velocity", "velo": "velocity",
-    "lin": "linear", "pos": "position", "thr": "thruster", "temps": "time",
+    "app": "apparent", "appar": "apparent", "lin": "linear", "pos": "position", "thr": "thruster",
+    "temps": "time",
 }  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from twin.recording.jsonable import plain
 from twin.study.calibration.usual import significantly_there
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.start import waves_on
-from twin.study.reference.derivatives import Derivative, noted
+from twin.study.reference.derivatives import KEPT, UNEXCITED, Derivative, noted
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.steering_gear import gears_of
 from twin.study.reference.weather_baseline import FAINT
@@ -51,6 +51,14 @@ class Core:
     def unexcited(self) -> list[str]:
         """Derivatives of which the voyages say nothing."""
         return [n for d in self.derivatives if not d.excited for n in d.unknown.names]
+
+
+def sourced(width: float, sd: float, why: str) -> str:
+    """Where a number of a part comes from: `why`, or its prior, where the voyages took hardly anything away
+    of that prior's variance (as of a derivative). `width`: the prior's standard deviation, `sd` what is left
+    of it."""
+    today = datetime.date.today().isoformat()
+    return KEPT if 1.0 - (sd / width) ** 2 < UNEXCITED else f"calibrated {today}: {why}"
 
 
 def remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
@@ -110,9 +118,11 @@ def record(ship: Ship, after: Ship, core: Core, way: str, held_out: list[dict[st
 
 
 def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
-    """The numbers of a part of it that this calibration put into the ship file."""
+    """The numbers of a part of it that this calibration measured and put into the ship file; one that keeps
+    its prior was not measured."""
     numbers = core.numbers.get(owner, {}) if _found_here(owner, after, core) else {}
-    return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
+    measured = {name: number for name, number in numbers.items() if number["source"] != KEPT}
+    return {name: {k: v for k, v in number.items() if k != "source"} for name, number in measured.items()}
 
 
 def _row(d: Derivative, name: str, ship: Ship, after: Ship) -> dict[str, Any]:

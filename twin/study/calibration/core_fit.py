@@ -1,7 +1,6 @@
 """`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves
 unexplained."""
 
-import datetime
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,7 +10,14 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.calibration.calibration_record import PARTS, Core, record, remembering, searched_parts
+from twin.study.calibration.calibration_record import (
+    PARTS,
+    Core,
+    record,
+    remembering,
+    searched_parts,
+    sourced,
+)
 from twin.study.calibration.held_out import HeldOut, errors
 from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.own_instruments import own_instruments
@@ -219,9 +225,8 @@ def _core(rough: RoughCore, progress: Callable[[str], None]) -> Core:
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
     """What the ship file keeps of the numbers of a part of it that was found with the core."""
-    source = f"calibrated {datetime.date.today().isoformat()}: {why}"
     return {
-        u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
+        u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": sourced(u.sd, sd, why)}
         for u, value, sd in zip(found.unknowns, found.value, found.sd, strict=True)
         if owner in (u.owner, *u.also)
     }

@@ -8,6 +8,7 @@ from twin.num import num
 from twin.physics.actuators import NUMBERS
 from twin.physics.effects import of_role
 from twin.physics.ship import DERIVATIVES
+from twin.study.estimation.columns import NO_MODEL
 
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
@@ -123,12 +124,13 @@ def _blind(between: Mapping[str, float]) -> list[str]:
     large = {
         label: widths
         for label, widths in between.items()
-        if widths >= BLIND and not label.startswith(("core.", "form.", "late."))
+        if widths >= BLIND and label.partition(".")[0] not in ("core", *NO_MODEL)
     }
     if not large:
         return []
     told = ", ".join(f"{label} ({widths:.1f} times its usual width)" for label, widths in large.items())
+    differ, its = ("differs", "its") if len(large) == 1 else ("differ", "their")
     return [
-        f"{told} differs so much between these voyages that a fault of its kind will hardly be seen: was "
+        f"{told} {differ} so much between these voyages that a fault of {its} kind will hardly be seen: was "
         "something wrong on one of them?"
     ]

@@ -89,7 +89,7 @@ def _where(result: dict[str, Any]) -> list[str]:
 
 
 def _worst(windows: list[dict[str, Any]]) -> list[str]:
-    out = ["", "worst windows"]
+    out = ["", "worst windows (error against the mean of all)"]
     return out + [
         f"  {w['voyage']}: {w['start_s']:.0f} to {w['end_s']:.0f} s, "
         f"{num(w['position_m'], 3)} m and {num(w['heading_deg'], 2)} deg off (x{num(w['error_ratio'], 2)})"

@@ -13,6 +13,7 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Fit
 
+KEPT = "prior kept: the reference voyages do not excite it"
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
 
 
@@ -66,7 +67,7 @@ def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
     """The ship with their values, standard errors and priors."""
     source = (
         (f"calibrated {datetime.date.today().isoformat()}"),
-        "prior kept: the reference voyages do not excite it",
+        KEPT,
     )
     entries = {
         name: {

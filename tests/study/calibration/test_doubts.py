@@ -1,0 +1,26 @@
+"""What a calibration says is doubtful."""
+
+from twin.study.calibration.doubts import doubts
+
+
+def told(between):
+    """The sentences about numbers that differ by so many prior widths from voyage to voyage."""
+    fell = {"horizon_s": 60.0, "windows": 9, "position_m": 1.0, "before_m": 2.0}
+    fell |= {"heading_deg": 1.0, "before_deg": 2.0}
+    return doubts([], [fell], (0.03, 0.03, 0.03), between=between)
+
+
+def test_only_faults_are_said_to_be_hard_to_see():
+    """Test: what waves do at once, the core's form and how late instruments are differ as much as an effect.
+    Expected: the effect alone is told: the others are no faults that could be seen."""
+    inner = {"core.N_vdot": 1.6, "form.X_u4": 1.6, "late.log": 1.6, "sea.helm": 1.6, "rough.yaw": 1.6}
+    assert told(inner) == []
+    (one,) = told(inner | {"SteeringLag.delay": 1.6})
+    assert one.startswith("SteeringLag.delay (1.6 times its usual width) differs so much")
+    assert "sea." not in one
+
+
+def test_several_of_them_are_said_in_the_plural():
+    (both,) = told({"SteeringLag.delay": 1.6, "PropellerWalk.c_n": 1.2, "Wind.c_x": 0.4})
+    assert "SteeringLag.delay (1.6 times its usual width), PropellerWalk.c_n" in both
+    assert "differ so much" in both and "Wind.c_x" not in both
