@@ -10,6 +10,7 @@ import time
 
 import pytest
 
+from tests.command_lines import hears_interrupts
 from twin.live.bridge.feed import BusFeed
 from twin.live.keelson.messages import Row
 from twin.live.log.logfile import LogFile
@@ -111,7 +112,12 @@ def test_a_recorded_voyage_is_seen_on_the_bus_paused_and_to_its_end(voyage, tmp_
         stderr=subprocess.PIPE,
         text=True,
     )
-    view = subprocess.Popen([*TWIN, "view", "--text", "--connect", place], stdout=subprocess.PIPE, text=True)
+    view = subprocess.Popen(
+        [*TWIN, "view", "--text", "--connect", place],
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=hears_interrupts,
+    )
     feed = BusFeed(Settings({"bus.listen": "", "bus.connect": [place]}))
     try:
         first = heard(feed, 120.0, 5)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.command_lines import hears_interrupts
 from twin.errors import TwinError
 from twin.live.bridge.server import MAX_BODY, NAMES, Server
 
@@ -148,8 +149,13 @@ def test_a_port_that_is_taken_is_one_line(server, watch):
 
 def test_a_view_that_is_interrupted_ends_as_one_that_was():
     command = [sys.executable, "-m", "twin", "view", "--port", "0", "--connect", "tcp/127.0.0.1:1"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline().startswith("open once: ")
-        process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 130
-        assert process.stderr.read().splitlines()[-1] == "interrupted"
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=hears_interrupts
+    ) as process:
+        try:
+            assert process.stdout.readline().startswith("open once: ")
+            process.send_signal(signal.SIGINT)
+            assert process.wait(20) == 130
+            assert process.stderr.read().splitlines()[-1] == "interrupted"
+        finally:
+            process.kill()

@@ -8,6 +8,7 @@ import time
 
 import pytest
 
+from tests.command_lines import hears_interrupts
 from twin.study.fleet.spread import spread
 
 pytest.importorskip("distributed")
@@ -42,6 +43,7 @@ def test_a_scheduler_that_is_given_does_the_work():
 INTERRUPTED = """
 import time
 from twin.cli import guarded
+from tests.command_lines import hears_interrupts
 from twin.study.fleet.spread import spread
 if __name__ == "__main__":
     print("begins", flush=True)
@@ -56,7 +58,7 @@ def test_an_interrupt_ends_all_processes_with_one_word(after_s, tmp_path):
     begun = subprocess.Popen(
         [sys.executable, str(tmp_path / "long.py")],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        preexec_fn=hears_interrupts,
     )  # fmt: skip
     begun.stdout.readline()
     time.sleep(after_s)
