@@ -43,7 +43,6 @@ def test_a_scheduler_that_is_given_does_the_work():
 INTERRUPTED = """
 import time
 from twin.cli import guarded
-from tests.command_lines import hears_interrupts
 from twin.study.fleet.spread import spread
 if __name__ == "__main__":
     print("begins", flush=True)
