@@ -17,7 +17,7 @@ from twin.live.certificate.set_cells import Cells, Ends, Span
 from twin.live.observer.operating import EVERYTHING, OperatingSet
 
 STREAMS = 8  # steps in which the current's speed is rounded up
-KEPT = 200  # parts of the set that are remembered
+PARTS_KEPT = 200  # parts of the set that are remembered
 ROUNDING = 1e-9
 
 Floats = tuple[float, ...]
@@ -108,7 +108,7 @@ class SetParts:
         level = min(ceil(STREAMS * stream / self._most - ROUNDING), STREAMS) if stream else 0
         key = self._cells.span((u - a, v - b, r - c), (u + a, v + b, r + c)), level
         if key not in self._found:
-            if len(self._found) >= KEPT:
+            if len(self._found) >= PARTS_KEPT:
                 self._found.clear()
             self._found[key] = self._made(key[0], level * self._most / STREAMS)
         return self._found[key].under(force)

@@ -22,7 +22,7 @@ SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)
 ERROR = slice(-2, None)  # behind all others, where a receiver errs: north, east
 HEADING = 2
 GROUND = slice(3, 5)  # readings of velocity over ground
-MANY = 12  # triangles, from which to invert them in blocks is faster
+IN_BLOCKS_FROM = 12  # triangles: of fewer, a general inverse is faster
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 
@@ -198,7 +198,7 @@ def lower_inverse(L: np.ndarray) -> np.ndarray:
     """The inverses (..., n, n) of lower triangles `L` (..., n, n), in units of one over theirs: blocks twice
     as large each time, of all at once. A third of what a general inverse takes for some hundred of them; of a
     few, that one takes a third. Source: Golub & Van Loan (2013) Matrix computations, sec. 3.1."""
-    if L.size < MANY * L.shape[-1] ** 2:
+    if L.size < IN_BLOCKS_FROM * L.shape[-1] ** 2:
         return np.linalg.inv(L)
     n, out = L.shape[-1], np.zeros_like(L)
     one = _diagonal(out)

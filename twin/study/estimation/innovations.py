@@ -44,7 +44,7 @@ from twin.study.track.motion_channels import READINGS
 from twin.study.track.segments import segments
 from twin.study.track.track import Track
 
-ABREAST = 24  # segments, of which more side by side take as much longer as they are more
+ABREAST = 24  # segments filtered side by side: a step of more takes as much longer, and holds them all
 
 
 @dataclass(frozen=True)
