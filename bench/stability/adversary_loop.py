@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.stability.adversary_fleet import HEADING_NOISE, AdversaryFleet
+from bench.stability.adversary_fleet import AdversaryFleet
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
@@ -39,12 +39,14 @@ SPEEDS = [CHANNELS.index(name) for name in ("surge_velocity_mps", "sway_velocity
 
 
 class LoopCase(NamedTuple):
-    """One line of the table: which ship, how often, how many runs."""
+    """One line of the table: which ship, how often, how many runs; `H_s` [m]: in waves
+    the ship is turned hard as well, so that it goes in and out of the usual set."""
 
     ship: str
     rate_hz: float
     runs: int
     dropouts: bool = False
+    H_s: float = 0.0
 
 
 CASES = (
@@ -54,6 +56,8 @@ CASES = (
     LoopCase("container", 50.0, 10),
     LoopCase("usv", 50.0, 10),
     LoopCase("usv", 10.0, 10),
+    LoopCase("kvlcc2", 10.0, 10, H_s=1.5),
+    LoopCase("container", 10.0, 10, H_s=0.8),
 )
 
 
@@ -76,7 +80,8 @@ class Loops(AdversaryFleet):
         tube, self.rudder = self.loops[0].stabilizer.tube, np.zeros(runs)
         self.shaft: np.ndarray | None = None  # as first ordered
         assert tube is not None, self.loops[0].stabilizer.why_not
-        super().__init__(Model.of(self.loops[0].ship), tube.certificate, runs, seed, dropouts=case.dropouts)
+        model = Model.of(self.loops[0].ship)
+        super().__init__(model, tube.certificate, runs, seed, case.H_s, case.dropouts)
         self.halfway, self.late = self.truth, np.arange(runs) % 2 == 1
 
     def step(self, k: int) -> np.ndarray:
@@ -96,6 +101,12 @@ class Loops(AdversaryFleet):
         self.halfway = self.true.step(self.truth, at, 0.5 * self.h)
         self.truth = self.true.step(self.halfway, at, 0.5 * self.h)
         return error
+
+    def _helm(self) -> None:
+        super()._helm()
+        if self.H_s:
+            over = self.c.operating.ranges["delta"][1]
+            self.inputs["delta"] = np.copysign(over, self.inputs["delta"])
 
     def _tick(self, k: int) -> None:
         now_s = BEGIN_S + k * self.h
@@ -120,10 +131,20 @@ class Loops(AdversaryFleet):
         side = self._against(k)
         x, y, psi, *nu = np.where(self.late, self.halfway, self.truth)
         u, v, r = np.array(nu) + self.noise * side
-        heading = np.degrees(psi + HEADING_NOISE * side[2]) % 360.0
+        heading = np.degrees(psi + self.heading_noise * side[2]) % 360.0
         assert self.shaft is not None
         said = np.array(
-            [x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.shaft, 0.0 * u]
+            [
+                x,
+                y,
+                heading,
+                u,
+                v,
+                np.degrees(r),
+                np.degrees(self.rudder),
+                60.0 * self.shaft,
+                self.H_s + 0.0 * u,
+            ]
         )
         said[SPEEDS] = np.where(self.received, said[SPEEDS], np.nan)
         return said

@@ -123,7 +123,8 @@ class Stabilizer:
         return self._parity.feed(measured, observer.estimate, tube.beta, dt)
 
     def _begin(self, observer: Observer, measured: Measured, tube: Tube) -> None:
-        """The observer was set to what is measured."""
+        """The observer was set to what is measured: in waves, by instruments that move with them."""
+        tube.under(measured.si.get("H_s", 0.0), True)
         open_ = LeftOpen(observer, measured, tube, self._since_late_s, 0.0)
         tube.reset(*open_.bounds)
         self._guessed = tuple(a for a in NU if not open_.known(a))

@@ -43,7 +43,8 @@ def section(found: Sequence[CaseAttacked], command: str) -> str:
         "b: the ultimate bound (m/s, m/s, deg/s). Sample's age: at most, in samples. Error/tube and error/b: "
         "the greatest error over the live and the ultimate bound, by axis; the first with short ticks and "
         "lost samples too. At random: error/b of the random runs among them. On board: the certificate that "
-        "the loop takes (its own delay, the heading estimated); late n: that of Theorem 2 as in Runs above.",
+        "the loop takes (its own delay, the heading estimated); as far as it reaches: of a turn beyond the "
+        "usual set (docs/stability.md, 4c); late n: that of Theorem 2 as in Runs above.",
         f"Over all rows b is {_list(least)} to {_list(most)} times the greatest error met (u, v, r), and the "
         f"adversary's error {_list(gain)} times that of the random runs (median).",
         "",
@@ -120,8 +121,11 @@ def _mixed(x: CaseAttacked) -> list[list[str]]:
 
 
 def _name(x: CaseAttacked) -> list[str]:
-    what = "on board" if x.case.late is None else f"late {x.case.late}"
-    return [x.case.ship, f"{x.case.rate_hz:g}", what + (f", {x.inner} inner steps" if x.inner > 1 else "")]
+    return [
+        x.case.ship,
+        f"{x.case.rate_hz:g}",
+        x.case.name + (f", {x.inner} inner steps" if x.inner > 1 else ""),
+    ]
 
 
 def _outside(x: CaseAttacked) -> list[str]:

@@ -12,10 +12,9 @@ from math import isfinite
 from typing import Any
 
 from twin.checksum import sha256_hex
-from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate.comparison_systems import Matrix, Row
-from twin.live.certificate.gains import best_gain, gains_that_do, suited_gain, usual_gain
+from twin.live.certificate.gains import best_gain, check, gains_that_do, suited_gain, three, usual_gain
 from twin.live.certificate.heading_bound import with_heading
 from twin.live.certificate.plant import (
     HEADING_NOISE,
@@ -59,7 +58,7 @@ __all__ = [
     "usual_noise",
 ]
 
-VERSION = 8
+VERSION = 9
 
 
 @dataclass(frozen=True)
@@ -80,6 +79,8 @@ class Certificate(Promise):
     estimated_heading: bool = False
     # steps into which a period is cut; more than one: samples correct their own time
     inner: int = 1
+    # the same ship as far as its live bound is followed, where that is no matter of cells
+    reach: Plant | None = None
     ship: str = ""
     fingerprint: str = ""
 
@@ -103,6 +104,12 @@ class Certificate(Promise):
     def operating(self) -> OperatingSet:
         """The operating set for which it holds."""
         return self.plant.operating
+
+    def in_reach(self) -> "Certificate":
+        """What holds, with the same K, as far as the live bound is followed."""
+        assert self.reach is not None
+        there = replace(self, plant=self.reach, reach=None)
+        return replace(there, **_fields(there._again(self.noise, self.disturbance, self.heading_noise)))
 
     def bound_in(self, H_s: float) -> Row:
         """The ultimate bound in a sea of that height [m/s, m/s, rad/s]."""
@@ -151,6 +158,7 @@ class Certificate(Promise):
             raise ValueError("certificate changed since it was written")
         table = _tuples(told)
         table["plant"] = Plant.of_table(table["plant"])
+        table["reach"] = table["reach"] and Plant.of_table(table["reach"])
         table["disturbance"] = Disturbance(**table["disturbance"])
         table["step"] = Recursion(**table["step"])
         found = cls(**table)
@@ -165,8 +173,9 @@ class Certificate(Promise):
         positive = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h))
         bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
         noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
-        told = (getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__)
-        return positive and noisy and self.plant.whole and all(told)
+        told = all(getattr(self, name) == x for name, x in _fields(again).items())
+        reached = self.reach is None or self.reach.operating.ranges == self.operating.reach
+        return positive and noisy and self.plant.whole and reached and told
 
 
 def certify(
@@ -183,6 +192,7 @@ def certify(
     saturation: Row = (0.0, 0.0, 0.0),
     estimated_heading: bool = False,
     inner: int = 1,
+    reach: bool = False,
 ) -> Certificate:
     """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest).
 
@@ -197,9 +207,10 @@ def certify(
         weights are covered.
     estimated_heading: the physics is evaluated at the observer's heading, so its error is a fourth state.
     inner: steps into which a period is cut by an observer that corrects at a sample's own time (`RollBack`).
+    reach: with what a live bound needs beyond the operating set (an observer with inner steps always has it).
     """
     delays = [delay_samples] * 3 if isinstance(delay_samples, int) else [*delay_samples]
-    _check(_three(1.0 if K is None else K), h, delays, noise)
+    check(three(1.0 if K is None else K), h, delays, noise)
     m: Ages = (delays[0], delays[1], delays[2])
     d = _bound_of(disturbance) or usual_disturbance(model)
     d = replace(d, calm=c3.add(d.calm, saturation))
@@ -210,11 +221,10 @@ def certify(
         K = FULL_GAIN / h
     elif K is None:
         K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m)))
-    K = c3.row(_three(K))
+    K = c3.row(three(K))
     promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)
-    parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(
-        **parts,
+        **_fields(promise),
         K=K,
         delays=m,
         noise=noise,
@@ -225,8 +235,13 @@ def certify(
         extra_growth=extra_growth,
         estimated_heading=estimated_heading,
         inner=inner,
+        reach=plant_of(model, OperatingSet(operating.reach), h, numbers) if reach and inner == 1 else None,
         ship=model.ship.name,
     )
+
+
+def _fields(promise: Promise) -> dict[str, Any]:
+    return {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
 
 
 def _promised(
@@ -259,31 +274,14 @@ def on_board(
         "saturation": saturation,
         "estimated_heading": True,
         "inner": inner,
+        "reach": True,
     }
-
-
-def _three(K: float | Sequence[float]) -> list[float]:
-    return [K] * 3 if isinstance(K, (int, float)) else [*K]
 
 
 def _bound_of(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:
     if disturbance is None or isinstance(disturbance, Disturbance):
         return disturbance
     return Disturbance(c3.row(disturbance))
-
-
-def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float]) -> None:
-    """Refuse what is no gain, period, delay or noise."""
-    if (
-        not len(K) == len(noise) == len(m) == 3
-        or not all(0.0 <= x < float("inf") for x in (*K, h, *m, *noise))
-        or not h > 0.0
-        or not all(k > 0.0 for k in K)
-    ):
-        raise SettingsError(
-            f"stabilizer: K = {tuple(K)}, period {h} s, delay {tuple(m)} samples, noise {tuple(noise)}: "
-            "three positive gains, a positive period, no negative number are needed. Correct the settings."
-        )
 
 
 def digest(table: dict[str, Any]) -> str:

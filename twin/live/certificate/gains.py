@@ -1,8 +1,10 @@
 """Which gains K the period and the delay allow, and which of them to take."""
 
+from collections.abc import Sequence
 from math import sqrt
 from typing import Any
 
+from twin.errors import SettingsError
 from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate.comparison_systems import AXES, Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
@@ -93,3 +95,22 @@ def _edge(holds: Any, good: float, bad: float) -> float:
 
 def _between(low: float, high: float, count: int = 25) -> list[float]:
     return [low * (high / low) ** (i / (count + 1.0)) for i in range(1, count + 1)]
+
+
+def three(K: float | Sequence[float]) -> list[float]:
+    """By axis; one number is that of each."""
+    return [K] * 3 if isinstance(K, (int, float)) else [*K]
+
+
+def check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float]) -> None:
+    """SettingsError where one of these is no gain, period, delay or noise."""
+    if (
+        not len(K) == len(noise) == len(m) == 3
+        or not all(0.0 <= x < float("inf") for x in (*K, h, *m, *noise))
+        or not h > 0.0
+        or not all(k > 0.0 for k in K)
+    ):
+        raise SettingsError(
+            f"stabilizer: K = {tuple(K)}, period {h} s, delay {tuple(m)} samples, noise {tuple(noise)}: "
+            "three positive gains, a positive period, no negative number are needed. Correct the settings."
+        )

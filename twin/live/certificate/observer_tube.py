@@ -15,14 +15,14 @@ from math import inf
 
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison_systems import add, scaled_row
-from twin.live.certificate.periods import ROUNDING_SHARE, TABLE, Periods, of_certificate
+from twin.live.certificate.periods import ROUNDING_SHARE, TABLE
+from twin.live.certificate.set_rows import SetRows
 from twin.live.observer.operating import NU, WORDS, in_unit
 from twin.physics.state import Situation
 
 NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
 
 Three = tuple[float, float, float]
-Rows = tuple[tuple[float, ...], ...]
 NO_PULL = (0.0, 0.0, 0.0)
 UNKNOWN: tuple[Three, float] = ((NOTHING, NOTHING, NOTHING), NOTHING)
 NONE = (False, False, False)
@@ -75,7 +75,15 @@ class Tube:
         """`start` bounds the error of the first estimate; by default that is a measurement, so its noise."""
         self.certificate = certificate
         self.window = look_back(max(certificate.delays))
-        self.periods: Periods = of_certificate(certificate)
+        self._usual = self._wider = SetRows(certificate)
+        self._sets = [self._usual]
+        if certificate.reach:
+            self._wider = SetRows(certificate.in_reach())
+            self._sets.append(self._wider)
+        self.periods = self._usual.periods
+        # how far it surely is from the ends of the usual set [m/s, m/s, rad/s]; None: it may be outside
+        self._room: Three | None = None
+        self._beyond = Highest(self.window)  # whether it may have left that set, by tick
         self.oldest_s = (1.0 + ROUNDING_SHARE) * max(certificate.delays) * certificate.h
         first = self.beta = certificate.noise if start is None else start
         self.psi = certificate.heading_noise
@@ -90,7 +98,7 @@ class Tube:
         self._alones = tuple([Highest(self.window, b) for b in first])
         # the highest in the window, and whether the learned force acted, for which the rows were made
         self._sea = (-1.0, -1.0)
-        self._look(0.0, True)
+        self.under(0.0, True)
 
     def carried(self, pulled: Three, turned: float, since_s: float) -> tuple[Three, float]:
         """What was `know`n (nu, psi) one step later, with no measurement counted: E of it, and what samples
@@ -139,14 +147,15 @@ class Tube:
         h, K = self.certificate.h, self.certificate.K
         dt = h if dt is None else dt
         late = self.periods.count(dt)
-        self._look(self._seas.push(H_s), self._acted.push(float(acts)) > 0.0)
+        self.under(self._seas.push(H_s), self._acted.push(float(acts)) > 0.0)
+        rows = self._set_rows(late == 1)
         pu, pv, pr = self._widest
         (u, v, r), psi = self.beta, self.psi
         if late == 1:
-            short, table = max(h - dt, 0.0), self._table
+            short, table = max(h - dt, 0.0), rows.table
         else:
             late = late or TABLE[-1]
-            short, table, received, heading = 0.0, self._late_rows(late), NONE, False
+            short, table, received, heading = 0.0, rows.late(late), NONE, False
         beta, alone, E = [], [], 0.0
         (known_u, known_v, known_r), known_psi = self._known
         for i, (v0, v1, v2, d, t, w0, w1, w2, again, d0, d1, d2, c) in enumerate(table):
@@ -211,37 +220,23 @@ class Tube:
             self._pulls.clear()
         return [b + (late[i] if received[i] else pulled[i]) for i, b in enumerate(beta)]
 
-    def _look(self, H_s: float, acts: bool) -> None:
-        """The rows for this sea: for each axis (V, d, turned, W, again, drift, c)."""
+    def under(self, H_s: float, acts: bool) -> None:
+        """What both sets have in this sea."""
         if self._sea == (H_s, float(acts)):
             return
         self._sea = H_s, float(acts)
         self._halves = halves(self.certificate)
-        c, step, one = self.certificate, self.certificate.step, self.periods.of(1)
-        self._disturbance = (
-            c.disturbance.at(H_s) if acts else add(c.disturbance.at(H_s), scaled_row(-1.0, c.saturation))
-        )
-        # how fast it can change its motion
-        self.way: Three = add(c.plant.most, scaled_row(1.0 / c.h, one.pushed(self._disturbance)))
-        d = add(one.pushed(self._disturbance), one.calm)
-        self.noise: Three = c.disturbance.noise(c.noise, H_s)
-        self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
-        if not c.estimated_heading:
+        usual, wider = self._usual.under(H_s, acts), self._wider.under(H_s, acts)
+        self.noise, self.heading_noise = usual.noise, usual.heading_noise
+        if not self.certificate.estimated_heading:
             self.psi = self.heading_noise
-        told = step.left_by(d, self.noise)
-        self._table: Rows = tuple(
-            (*one.V[i], d[i], one.turned[i], *step.now[i], step.again[i], *step.drift[i], told[i])
-            for i in (0, 1, 2)
-        )
-        self._late: dict[int, Rows] = {}
+        self.way: Three = wider.way  # how fast it can change its motion, wherever it was
 
-    def _late_rows(self, late: int) -> Rows:
-        """The rows of a tick that lasted so many periods: no measurement counts in it."""
-        if late not in self._late:
-            many = self.periods.of(late)
-            d = add(many.pushed(self._disturbance), many.calm)
-            self._late[late] = tuple((*many.V[i], d[i], many.turned[i], *(0.0,) * 8) for i in (0, 1, 2))
-        return self._late[late]
+    def _set_rows(self, in_time: bool) -> SetRows:
+        """Those of the usual set if nothing that a late measurement looks back on can have left it."""
+        way, h, room = self._usual.way, self.certificate.h, self._room
+        stays = in_time and room and h * way[0] <= room[0] and h * way[1] <= room[1] and h * way[2] <= room[2]
+        return self._wider if self._beyond.push(float(not stays)) > 0.0 else self._usual
 
     @property
     def widest(self) -> Three:
@@ -259,10 +254,16 @@ class Tube:
     ) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
         it. `within`: how far it may be from the estimate, where that is known better than by the tube; dt:
-        how long the last tick was, if longer than a sample."""
-        return self.certificate.operating.outside(
-            s, add(within or self.beta, scaled_row(max(self.certificate.h, dt), self.way))
-        )
+        how long the last tick was, if longer than a sample. In which of both sets the next step goes is
+        remembered."""
+        within, lasts_s = within or self.beta, max(self.certificate.h, dt)
+        for rows in self._sets:
+            left = rows.operating.outside(s, add(within, scaled_row(lasts_s, rows.way)))
+            if left is None:
+                self._room = rows.operating.room(s, within) if rows is self._usual else None
+                return None
+        self._room = None
+        return left
 
     def says_nothing(self) -> str | None:
         """In words, while the bound is as wide as the operating set itself; else None."""

@@ -61,7 +61,7 @@ class RolledTube(Tube):
         self._set = self.parts.operating
         self._part: SetPart | None = None  # in which the ship surely is; None: it may be outside
         self._sea = (-1.0, -1.0)
-        self._look(0.0, True)
+        self.under(0.0, True)
 
     @property
     def left(self) -> bool:
@@ -112,7 +112,7 @@ class RolledTube(Tube):
 
     def follow(self, path: Path, H_s: float = 0.0, acts: bool = True) -> Three:
         """The bound at the end of that path."""
-        self._look(H_s, acts)
+        self.under(H_s, acts)
         nodes, self._left, self._from_s = self._nodes, None, path.start_s
         again = bool(nodes) and nodes[-1].time_s > path.start_s
         self.uncounted = [0.0, 0.0, 0.0]
@@ -183,7 +183,7 @@ class RolledTube(Tube):
                 self.uncounted[i] += moved
         return tuple(bound)  # type: ignore[return-value]
 
-    def _look(self, H_s: float, acts: bool) -> None:
+    def under(self, H_s: float, acts: bool) -> None:
         """The rows of an inner step in this sea."""
         if self._sea == (H_s, float(acts)):
             return

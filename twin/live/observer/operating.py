@@ -98,6 +98,15 @@ class OperatingSet:
                 return outside_in_words(name, value, 0.0, lo, hi)
         return None
 
+    def room(self, s: Situation, within: tuple[float, float, float]) -> tuple[float, float, float]:
+        """How far a motion through the water that is known within that is from the nearer end of its range
+        [m/s, m/s, rad/s]."""
+        u, v, r = [
+            min(value - lo, hi - value) - b
+            for (_, lo, hi), value, b in zip(self._motion, (s.u_r, s.v_r, s.r), within, strict=False)
+        ]
+        return u, v, r
+
     @cached_property
     def _motion(self) -> list[tuple[str, float, float]]:
         return [(name, *self.ranges.get(name, EVERYTHING)) for name in MOTION]
