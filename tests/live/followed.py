@@ -33,7 +33,10 @@ class Followed:
         self.from_s = inf  # what its bound rests on is no older
         self.only_way = False  # whether only the way to now has left it
         self.left, self.nothing = None, []  # what leaves the set; answers of says_nothing, then None
-        self.told, self.stepped, self.asked, self.looked_back = [], [], [], []
+        self.told, self.stepped, self.asked, self.looked_back, self.seas = [], [], [], [], []
+
+    def under(self, H_s, acts):
+        self.seas.append((H_s, acts))
 
     def outside(self, s, within, dt, on_the_way=True):
         self.asked.append((within, dt))
@@ -73,7 +76,7 @@ class RolledAlong(RolledTube):
     widest = Followed.widest
     outside, says_nothing, carried = Followed.outside, Followed.says_nothing, Followed.carried
     rests_on, left = Followed.rests_on, None
-    know, reset = Followed.know, Followed.reset
+    know, reset, under = Followed.know, Followed.reset, Followed.under
 
     def follow(self, path, sea, acts):
         self.followed.append((path, sea, acts, self.distrusted))

@@ -184,6 +184,17 @@ def test_an_estimate_that_begins_anew_begins_at_what_the_instruments_leave_open(
     assert one.why[-1] == "too fast"
 
 
+def test_an_estimate_that_begins_in_waves_is_off_by_their_motion_too():
+    """Expected: the tube is set to that sea before it is asked what the instruments leave open, at each beginning."""
+    one = Watch()
+    one.run(3)
+    assert one.tube.seas == [(0.5, True)]
+    one.observer.restarts += 1
+    one.run(more={"H_s": 2.0})
+    one.run()
+    assert one.tube.seas == [(0.5, True), (2.0, True)]
+
+
 def test_after_a_late_tick_only_what_was_measured_since_leaves_anything_known():
     """Test: v is older than the late tick; the estimate begins anew, or it is outside of the set. Expected: v is open."""
     one = Watch()

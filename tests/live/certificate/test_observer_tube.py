@@ -137,8 +137,19 @@ def test_two_hundred_hostile_runs_never_break_the_bound(case, runs, seconds):
         (LoopCase("usv", 50.0, 3), 4.0, 0.9),
         (LoopCase("usv", 10.0, 3), 4.0, 0.3),
         (LoopCase("kvlcc2_model", 10.0, 3), 20.0, 0.5),
+        (LoopCase("container", 10.0, 3, H_s=0.8), 30.0, 0.9),
+        (LoopCase("kvlcc2_model", 10.0, 2, H_s=0.02), 10.0, 0.9),
     ],
-    ids=["tanker", "drop-outs", "container", "boat", "boat in inner steps", "model in inner steps"],
+    ids=[
+        "tanker",
+        "drop-outs",
+        "container",
+        "boat",
+        "boat in inner steps",
+        "model in inner steps",
+        "container in waves, in and out of the usual set",
+        "model in waves",
+    ],
 )
 def test_hostile_ships_do_not_break_the_bound_of_the_twins_own_loop(case, seconds, share):
     """Test: three ships against the whole loop, its gates and its own K. Expected: it says that its

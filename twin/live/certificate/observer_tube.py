@@ -148,7 +148,7 @@ class Tube:
         dt = h if dt is None else dt
         late = self.periods.count(dt)
         self.under(self._seas.push(H_s), self._acted.push(float(acts)) > 0.0)
-        rows = self._set_rows(late == 1)
+        rows = self._set_rows(max(h, dt))
         pu, pv, pr = self._widest
         (u, v, r), psi = self.beta, self.psi
         if late == 1:
@@ -232,10 +232,10 @@ class Tube:
             self.psi = self.heading_noise
         self.way: Three = wider.way  # how fast it can change its motion, wherever it was
 
-    def _set_rows(self, in_time: bool) -> SetRows:
+    def _set_rows(self, lasted_s: float) -> SetRows:
         """Those of the usual set if nothing that a late measurement looks back on can have left it."""
-        way, h, room = self._usual.way, self.certificate.h, self._room
-        stays = in_time and room and h * way[0] <= room[0] and h * way[1] <= room[1] and h * way[2] <= room[2]
+        (u, v, r), room = scaled_row(lasted_s, self._usual.way), self._room
+        stays = room and u <= room[0] and v <= room[1] and r <= room[2]
         return self._wider if self._beyond.push(float(not stays)) > 0.0 else self._usual
 
     @property
