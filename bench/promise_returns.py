@@ -9,11 +9,13 @@ import argparse
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bench import bench_output
+from bench.broken_assumptions import Exceeded, exceeded
 from bench.endurance.lies import OTHERS
 from bench.instrument_lies import HULLS, WEATHERS, rows_of
 from bench.lie_kinds import LIES, Lie, Row
@@ -29,10 +31,13 @@ from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.live.signals.readings import Reading
-from twin.study.reference.split import low_frequency, window
+from twin.study.reference.split import SplitVoyage, low_frequency, window
 
 SEA_HZ = 10.0
 RATES = ((10.0, 10.0), (5.0, 5.0), (1.0, 1.0), (5.0, 10.0), (1.0, 10.0))  # of the log, of the loop
+LIE_WEATHERS = {"kvlcc2": "TS-01", "container": "TS-01", "usv": "calm"}
+WAVES = 1e-3  # a lower sea is none [m]
+LIE_RATES = {"kvlcc2": (10.0, 5.0, 1.0), "container": (10.0, 5.0, 1.0), "usv": (10.0, 5.0)}
 LEFT_OUT_S, LIE_AT_S, LIE_S, AFTER_S = 60.0, 180.0, 60.0, 420.0
 SUSPECTED = ("against", "far noisier", "stays at", "farther from", "clock of", "stepped")
 
@@ -51,11 +56,15 @@ class Withdrawn(NamedTuple):
 
 
 class Returned(NamedTuple):
-    """A lie of a minute: seconds to the first tick without a promise (NaN: none in the minute), seconds with
-    a wrong promise, seconds after the lie to the last tick without one."""
+    """A lie of a minute: the assumption that it comes nearest to and its greatest share of that limit;
+    seconds to the first tick without a promise since it is exceeded (since the lie began where none is; NaN:
+    none in the minute), seconds with a wrong promise, seconds after the lie to the last tick without one."""
 
+    hull: str
     lie: str
     rate_hz: float
+    share: float
+    assumption: str
     gone_s: float
     wrong_s: float
     back_s: float
@@ -73,7 +82,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     healthy = [row for hull in args.hull or HULLS for row in withdrawn(hull, args.seconds)]
-    back = [] if args.no_lies else [row for rate in (10.0, 5.0, 1.0) for row in returns(rate)]
+    told = [] if args.no_lies else [(hull, rate) for hull in args.hull or HULLS for rate in LIE_RATES[hull]]
+    back = [row for hull, rate in told for row in returns(rate, hull)]
     result = {"healthy": [r._asdict() for r in healthy], "lies": [r._asdict() for r in back]}
     bench_output.give(args, result, page(healthy, back), bench_output.kept(args.page))
     return 0
@@ -121,42 +131,56 @@ def _healthy(hull: str, sea: str, rows: Sequence[Row], log_hz: float, loop_hz: f
     return Withdrawn(hull, sea, log_hz, loop_hz, without / ticks, suspected / ticks, _first(said))
 
 
-def returns(rate_hz: float, hull: str = "kvlcc2") -> Iterator[Returned]:
+def returns(rate_hz: float, hull: str) -> Iterator[Returned]:
     """Every lie on one voyage at one rate of log and loop; the first part of it is sailed once."""
-    case = SeaCase(hull, "zigzag_10", "TS-01", seed=23, duration_s=LIE_AT_S + LIE_S + AFTER_S)
+    case = SeaCase(hull, "zigzag_10", LIE_WEATHERS[hull], seed=23, duration_s=LIE_AT_S + LIE_S + AFTER_S)
     (recording,) = simulate([case], 1.0 / SEA_HZ)
+    bench_output.tell(f"lies on {hull} at {rate_hz:g} Hz")
     voyage, every = sailed(recording), round(SEA_HZ / rate_hz)
-    n = window(voyage.T_p, 1.0 / SEA_HZ)
-    truth = low_frequency(voyage.nu, n)[:, : -2 * n][:, ::every]  # its mean needs both sides
+    # without waves all motion is the ship's own
+    n = window(voyage.T_p, 1.0 / SEA_HZ) if voyage.H_s > WAVES else 1
+    nu = low_frequency(voyage.nu, n)[:, : -2 * n]  # its mean needs both sides
+    voyage = replace(voyage, nu=nu[:, ::every], psi=voyage.psi[::every], current=voyage.current[:, ::every])
     rows, loop = list(rows_of(recording))[::every], loop_for(hull, rate_hz)
     first = round(LIE_AT_S * rate_hz)
     for k in range(first):
         heard(loop, rows[k], k / rate_hz, k)
     for lie in (*LIES, *OTHERS):
         copied = deepcopy(loop, {id(x): x for x in (loop.ship, loop.learned.residual)})
-        yield _lied(copied, lie, rows, truth, first, rate_hz)
+        yield _lied(copied, lie, rows, voyage, first, hull, rate_hz)
 
 
 def _lied(
-    loop: Loop, lie: Lie, rows: Sequence[Row], truth: np.ndarray, first: int, rate_hz: float
+    loop: Loop,
+    lie: Lie,
+    rows: Sequence[Row],
+    voyage: SplitVoyage,
+    first: int,
+    hull: str,
+    rate_hz: float,
 ) -> Returned:
     memory: dict[str, float] = {}
     said = Counter[str]()
     gone_s, wrong, last_s, over = np.nan, 0, 0.0, first + round(LIE_S * rate_hz)
-    for k in range(first, min(len(rows), truth.shape[1])):
-        row = dict(rows[k])
+    most, broken_s = Exceeded(), np.nan
+    for k in range(first, min(len(rows), voyage.nu.shape[1])):
+        row, since_s = dict(rows[k]), (k - first) / rate_hz
         if k < over:
-            lie.tell(row, (k - first) / rate_hz, memory)
+            lie.tell(row, since_s, memory)
+            now = exceeded(loop, voyage, k, rows[k], row)
+            if now.breaks and not most.breaks:
+                gone_s, broken_s = np.nan, since_s
+            most = max(most, now)
         tick, e = heard(loop, row, k / rate_hz, k), loop.observer.estimate
         if tick.certificate.inside:
-            error = np.abs(np.array((e.u, e.v, e.r)) - truth[:, k])
+            error = np.abs(np.array((e.u, e.v, e.r)) - voyage.nu[:, k])
             wrong += bool(np.any(error > promised_bound(loop)))
         elif k < over:
-            gone_s = (k - first) / rate_hz if gone_s != gone_s else gone_s
+            gone_s = since_s - (broken_s if most.breaks else 0.0) if gone_s != gone_s else gone_s
         else:
             last_s = (k + 1 - over) / rate_hz
             said[(loop.stabilizer.outside or "").partition(" = ")[0]] += 1
-    return Returned(lie.name, rate_hz, gone_s, wrong / rate_hz, last_s, _first(said))
+    return Returned(hull, lie.name, rate_hz, *most, gone_s, wrong / rate_hz, last_s, _first(said))
 
 
 def loop_for(hull: str, rate_hz: float) -> Loop:
@@ -189,11 +213,35 @@ def page(healthy: Sequence[Withdrawn], back: Sequence[Returned]) -> str:
             f"| {w.hull} | {w.sea} | {w.log_hz:g} | {w.loop_hz:g} | {100 * w.share:.1f} % | "
             f"{100 * w.suspected:.1f} % | {w.said} |"
         )
-    if back:
-        lines += ["", f"KVLCC2, TS-01, zigzag 10/10, each lie from {LIE_AT_S:.0f} s on for a minute:", ""]
-        lines += ["| lie | Hz | taken back after s | wrong s | last missing s after it | said then |"]
-        lines += ["|---" * 6 + "|"]
-    for r in back:
-        gone = "-" if r.gone_s != r.gone_s else f"{r.gone_s:.1f}"
-        lines.append(f"| {r.lie} | {r.rate_hz:g} | {gone} | {r.wrong_s:.1f} | {r.back_s:.0f} | {r.said} |")
-    return "\n".join(lines)
+    return "\n".join([*lines, *(_after_lies(back) if back else [])])
+
+
+LIES_BEGUN = f"""
+Zigzag 10/10 in TS-01, the boat in calm water, each lie from {LIE_AT_S:.0f} s on for a minute. A lie breaks an
+assumption where it exceeds the noise of a reading of motion or heading (A4), or where rudder or shaft are
+said to do what is more than D beyond what they do (A3). Taken back: counted from then on.
+
+| hull | Hz | lies | that break an assumption | taken back within 1 s | within 60 s | wrong s, all lies |
+|---|---|---|---|---|---|---|"""
+EACH_LIE = """
+| hull | lie | Hz | share of its limit | taken back after s | wrong s | last missing s after it | said then |
+|---|---|---|---|---|---|---|---|"""
+
+
+def _after_lies(back: Sequence[Returned]) -> list[str]:
+    """How soon it is taken back, by hull and rate, and every lie."""
+    lines = [LIES_BEGUN]
+    for hull, rate in dict.fromkeys((r.hull, r.rate_hz) for r in back):
+        some = [r for r in back if (r.hull, r.rate_hz) == (hull, rate)]
+        breaks = [r for r in some if r.share > 1.0]
+        soon, late = (sum(r.gone_s <= s for r in breaks) for s in (1.0, 60.0))
+        wrong_s = sum(r.wrong_s for r in some)
+        lines.append(f"| {hull} | {rate:g} | {len(some)} | {len(breaks)} | {soon} | {late} | {wrong_s:.1f} |")
+    return [*lines, EACH_LIE, *map(_line, back)]
+
+
+def _line(r: Returned) -> str:
+    gone = "-" if r.gone_s != r.gone_s else f"{r.gone_s:.1f}"
+    share = f"{r.assumption} {r.share:.2g}" if r.share else "none"
+    back = f"{gone} | {r.wrong_s:.1f} | {r.back_s:.0f} | {r.said}"
+    return f"| {r.hull} | {r.lie} | {r.rate_hz:g} | {share} | {back} |"
