@@ -48,6 +48,10 @@ def test_the_wider_set_is_steeper_and_takes_the_same_gain(c):
     assert all(a > b for a, b in zip(there.bound, c.bound, strict=True))
 
 
+def test_endless_slopes_are_no_set_to_follow_a_bound_in(c):
+    assert c.reach.bounded and not replace(c.reach, hi=((float("inf"),) * 3,) * 3).bounded
+
+
 def test_well_inside_the_usual_set_the_bound_is_the_usual_one(c, usual):
     at_sea, alone = Tube(c), Tube(usual)
     assert run(at_sea, [0.0] * 50)[-1] == pytest.approx(run(alone, [0.0] * 50)[-1])

@@ -223,6 +223,7 @@ def certify(
         K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m)))
     K = c3.row(three(K))
     promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)
+    far = plant_of(model, OperatingSet(operating.reach), h, numbers) if reach and inner == 1 else None
     return Certificate(
         **_fields(promise),
         K=K,
@@ -235,7 +236,7 @@ def certify(
         extra_growth=extra_growth,
         estimated_heading=estimated_heading,
         inner=inner,
-        reach=plant_of(model, OperatingSet(operating.reach), h, numbers) if reach and inner == 1 else None,
+        reach=far if far and far.bounded else None,
         ship=model.ship.name,
     )
 

@@ -4,7 +4,7 @@ and how it is disturbed.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, isfinite
 from typing import Any
 
 from twin.errors import SettingsError
@@ -50,6 +50,11 @@ class Plant:
         """Whether set and cells have all of their numbers."""
         cells_whole = self.cells is None or self.cells.whole(self.operating.reach)
         return self.operating.whole and cells_whole
+
+    @property
+    def bounded(self) -> bool:
+        """Whether no slope and no rate is endless."""
+        return all(isfinite(x) for row in (*self.magnitude(), self.heading, self.most) for x in row)
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""
