@@ -192,8 +192,10 @@ class Stabilizer:
         acts: bool,
     ) -> None:
         got = tuple([observer.received[a] and open_.in_time(a) for a in NU])
-        self._heard |= {a for a in NU if a in measured.si and a not in measured.derived}
-        self._guessed = tuple(a for a in self._guessed if not open_.known(a))
+        if len(self._heard) < len(NU):
+            self._heard |= {a for a in NU if a in measured.si and a not in measured.derived}
+        if self._guessed:
+            self._guessed = tuple(a for a in self._guessed if not open_.known(a))
         sea = measured.si.get("H_s", 0.0)
         if isinstance(tube, RolledTube) and isinstance(observer, RollBack):
             if suspected := any(test.suspects for test in self._watched):

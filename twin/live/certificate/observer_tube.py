@@ -83,7 +83,7 @@ class Tube:
         self.periods = self._usual.periods
         # how far it surely is from the ends of the usual set [m/s, m/s, rad/s]; None: it may be outside
         self._room: Three | None = None
-        self._beyond = Highest(self.window)  # whether it may have left that set, by tick
+        self._beyond = 0  # ticks for which a late measurement may look back on what was outside of it
         self.oldest_s = (1.0 + ROUNDING_SHARE) * max(certificate.delays) * certificate.h
         first = self.beta = certificate.noise if start is None else start
         self.psi = certificate.heading_noise
@@ -234,9 +234,10 @@ class Tube:
 
     def _set_rows(self, lasted_s: float) -> SetRows:
         """Those of the usual set if nothing that a late measurement looks back on can have left it."""
-        (u, v, r), room = scaled_row(lasted_s, self._usual.way), self._room
-        stays = room and u <= room[0] and v <= room[1] and r <= room[2]
-        return self._wider if self._beyond.push(float(not stays)) > 0.0 else self._usual
+        (u, v, r), room, s = self._usual.way, self._room, lasted_s
+        stays = room and s * u <= room[0] and s * v <= room[1] and s * r <= room[2]
+        self._beyond = max(self._beyond - 1, 0) if stays else self.window
+        return self._wider if self._beyond else self._usual
 
     @property
     def widest(self) -> Three:
