@@ -32,7 +32,20 @@ RUNS = (
 )
 
 
-LOOPS = ("ship", "Hz", "drop-outs", "K 1/s", "runs", "ticks", "inside", "broken", "b", "error/tube", "b/seen")
+LOOPS = (
+    "ship",
+    "Hz",
+    "H_s m",
+    "drop-outs",
+    "K 1/s",
+    "runs",
+    "ticks",
+    "inside",
+    "broken",
+    "b",
+    "error/tube",
+    "b/seen",
+)
 
 
 def tables(rows: list[tuple[Any, ...]], loops: list[tuple[Any, ...]], args: argparse.Namespace) -> str:
@@ -62,9 +75,9 @@ must hold, and does.
 ## The loop itself
 The twin's own sensors, gates, observer, guard and tube (`bench/stability/adversary_loop.py`), fed
 with the readings of the same hostile ships once in each tick (every other ship's half a sample late), at the
-K, delay and noise that it would take on board; no wind, no current, network and adaptation off. Inside: the
-share of ticks in which it said that its certificate holds; only those are judged, for of others it promises
-nothing.
+K, delay and noise that it would take on board; no wind, no current, network and adaptation off; in waves with
+the rudder hard over. Inside: the share of ticks in which it said that its certificate holds; only those are
+judged, for of others it promises nothing.
 
 {_head(*LOOPS)}
 {_lines(_loop(*row) for row in loops)}
@@ -95,11 +108,12 @@ def _sums(rows: list[tuple[Any, ...]], *names: str) -> list[Any]:
 
 
 def _loop(case: Any, c: Any, o: Any) -> list[str]:
-    u, v, r = c.bound
+    u, v, r = c.bound_in(case.H_s)
     bound, ticks = f"{u:.3f}, {v:.3f}, {degrees(r):.3f}" if c.ok else "no K like this holds", o.runs * o.steps
     return [
         case.ship,
         f"{case.rate_hz:g}",
+        f"{case.H_s:g}",
         "yes" if case.dropouts else "no",
         f"{c.K[0]:.3g}",
         str(o.runs),
