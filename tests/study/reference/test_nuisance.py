@@ -14,7 +14,7 @@ from twin.study.track.track import track
 RUDDER = "SteeringLag.delay"
 
 
-def rudder_age(make, late_s) -> float:
+def rudder_age(make, late_s):
     """By how much [s] the age of the rudder's reading is expected to differ from voyage to voyage, where it was so
     late on each of these."""
     ship, lines = load("kvlcc2"), []
