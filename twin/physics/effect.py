@@ -124,8 +124,8 @@ class Effect:
     every_day: ClassVar[tuple[str, ...]] = ()
     # standard deviation of its numbers between voyages, in widths of what a healthy ship has (decision 0030)
     varies: ClassVar[float] = 0.0
-    # numbers that do, to first order about none, what another of its numbers does
-    copies: ClassVar[tuple[str, ...]] = ()
+    ages: ClassVar[tuple[str, ...]] = ()  # numbers that the age of a reading makes, too (decision 0035)
+    copies: ClassVar[tuple[str, ...]] = ()  # numbers that do, to first order about none, what another does
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
     # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments`

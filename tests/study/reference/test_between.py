@@ -5,7 +5,7 @@ import pytest
 
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Normal
-from twin.study.reference.between import BetweenVoyages, scattered, ship_of
+from twin.study.reference.between import SHARES, BetweenVoyages, doubted, scattered, ship_of
 from twin.study.reference.nuisance import of_any_day, temper_of
 
 P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
@@ -51,6 +51,21 @@ def test_numbers_differ_by_what_is_usual_until_voyages_show_more():
     scatter[2] = 0.8
     found = scattered(fleet(scatter, 8, 1)[1], np.zeros(P), usual)
     assert 0.3**2 < found[2] < 1.7**2 and np.delete(found, 2).tolist() == np.delete(usual, 2).tolist()
+
+
+def test_an_age_differs_by_what_the_voyages_leave_likely():
+    """Test: no voyage, eight of which nothing differs, and eight of which the third number does; asked of the third
+    and the fourth number. Expected: without a voyage the mean of what is tried; next to nothing where they agree; its
+    size where they differ; all other numbers as is usual."""
+    usual, asked_of = np.full(P, 0.1**2), np.arange(P) == 2
+    none, scatter = np.zeros(P), 0.8 * asked_of
+    assert doubted([], none, usual, asked_of)[2] == pytest.approx(
+        sum(s**2 for s in SHARES) / (1 + len(SHARES))
+    )
+    alike, apart = (doubted(fleet(s, 8, 1)[1], none, usual, asked_of) for s in (none, scatter))
+    assert np.sqrt(alike[2]) < 0.15
+    assert 0.5 < np.sqrt(apart[2]) < 1.3
+    assert np.delete(apart, 2).tolist() == np.delete(usual, 2).tolist()
 
 
 def test_the_ships_own_numbers_are_known_no_better_than_their_scatter_over_the_voyages():

@@ -5,8 +5,43 @@ import numpy as np
 from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load
+from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.linear import linearise
 from twin.study.reference.between import BetweenVoyages, scattered
-from twin.study.reference.nuisance import Known, usual_unknowns
+from twin.study.reference.nuisance import TEMPER, Known, known_from, usual_unknowns
+from twin.study.track.track import track
+
+RUDDER = "SteeringLag.delay"
+
+
+def rudder_age(make, late_s):
+    """By how much [s] the age of the rudder's reading is expected to differ from voyage to voyage, where it was so
+    late on each of these."""
+    ship, lines = load("kvlcc2"), []
+    model, known = Model.of(ship), of_ship(ship)
+    unknowns = usual_unknowns(model, known)
+    for seed, late in enumerate(late_s):
+        one = make(seed=seed)
+        one.columns["rudder_angle_deg"] = np.interp(
+            one.time_s - late, one.time_s, one.columns["rudder_angle_deg"]
+        )
+        lines.append(linearise(track(one, ship), model, unknowns, known))
+    told = known_from(lines, unknowns, NoiseModel(), TEMPER)
+    i = [u.label for u in unknowns].index(RUDDER)
+    assert RUDDER not in told.between
+    return float(np.sqrt(told.scatter[i]) * unknowns[i].sd)
+
+
+def test_how_far_ages_differ_is_learned_from_the_voyages(make):
+    """Test: four voyages of 25 minutes whose rudder angle is shown at once, and four that show it 0 to 2 s late.
+    Expected: a spread below a quarter of a second; one of 0.5 to 1.5 s."""
+    assert rudder_age(make, (0.0, 0.0, 0.0, 0.0)) < 0.25
+    assert 0.5 < rudder_age(make, (0.0, 2.0, 0.3, 1.5)) < 1.5
+
+
+def test_one_voyage_does_not_tell_how_far_ages_differ(make):
+    """Test: a single voyage, whose two halves agree. Expected: more than of four voyages that agree."""
+    assert rudder_age(make, (0.0,)) > 0.3
 
 
 def test_the_next_voyage_is_never_known_better_than_healthy_voyages_differ():
@@ -23,3 +58,14 @@ def test_the_next_voyage_is_never_known_better_than_healthy_voyages_differ():
     np.testing.assert_allclose(foretold, 1.5 * lasting_ones, rtol=0.05, atol=1e-8)
     assert known.between == {}
     assert {u.owner for u in unknowns if u.varies} == {"HeadingBias", "SpeedLogMisalignment"}
+
+
+def test_ages_of_readings_are_numbers_of_their_effects():
+    """Expected: each name in `ages` is a number of its effect, in seconds; rudder, receiver and the instruments' usual
+    lateness have one."""
+    for effect in of_ship(load("kvlcc2")).values():
+        unit = {p.name: p.unit for p in effect.params()}
+        assert all(unit[name] == "s" for name in effect.ages), effect.__name__
+    unknowns = usual_unknowns(Model.of(load("kvlcc2")), of_ship(load("kvlcc2")))
+    owners = {u.label for u in unknowns if u.age}
+    assert owners >= {"SteeringLag.delay", "SensorDelay.delay", "late.log", "late.compass", "late.gyro"}

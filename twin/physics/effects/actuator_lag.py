@@ -15,6 +15,7 @@ class ActuatorLag(OfActuator, Lag):
     """This actuator answers late and slowly: a dead time and a time constant stand between its order and what
     it does."""
 
+    ages = ("delay",)
     with_core = "what was recorded of it is its order"
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 9 (actuator dynamics)"
 

@@ -23,6 +23,7 @@ class HeadingLag(SensorFault):
 
     attitude = True
     kinematic = True
+    ages = ("lag",)
     turning = "turned"
     by_readings = MappingProxyType({"heading_delay": "lag"})
     source = (

@@ -22,6 +22,7 @@ from twin.physics.state import Number, Situation
 class SensorDelay(SensorFault):
     """Satellite position and velocity come late, so the ship seems to lag behind itself on the track."""
 
+    ages = ("delay",)
     turning = "turned"
     by_readings = MappingProxyType({"gnss_delay": "delay"})
     source = (

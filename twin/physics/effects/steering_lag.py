@@ -25,6 +25,7 @@ class SteeringLag(Lag):
     copies = ("ease",)
     one_screw = True
     role = "gear"
+    ages = ("delay",)
     with_core = "the recorded rudder angle is its order"
     source = "SOLAS II-1/29 (65 deg in 28 s); Van Amerongen (1982) Adaptive steering of ships, ch. 2"
 

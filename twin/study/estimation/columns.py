@@ -35,6 +35,7 @@ class Unknown:
     # other effects whose number of this name it is, too; of the core: whole names of numbers that it also is
     also: tuple[str, ...] = ()
     varies: float = 0.0  # standard deviation between healthy voyages of one ship, in `sd`
+    age: bool = False  # whether it is the age of a reading, which differs from voyage to voyage
     voyage: str | None = None  # the track's name of the only voyage on which it acts; None: on all
 
     @property
@@ -71,7 +72,7 @@ LATENESS = {"log": [6, 7], "compass": [2], "gyro": [5]}  # instrument -> its rea
 
 def lateness_unknowns() -> list[Unknown]:
     """How late each instrument usually is [s]; satellite positions have SensorDelay."""
-    return [Unknown(LATE, name, "s", 0.0, 0.15, -1.0, 3.0) for name in LATENESS]
+    return [Unknown(LATE, name, "s", 0.0, 0.15, -1.0, 3.0, age=True) for name in LATENESS]
 
 
 def form_unknowns() -> list[Unknown]:
@@ -156,6 +157,7 @@ def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
                 hi,
                 p.name in effect.every_day,
                 varies=effect.varies,
+                age=p.name in effect.ages,
             )
         )
     return out

@@ -100,6 +100,20 @@ def scattered(
         best, scatter = max(scores), trials[int(np.argmax(scores))]
 
 
+def doubted(
+    told: Sequence[BetweenVoyages], pull: np.ndarray, usual: np.ndarray, numbers: np.ndarray
+) -> np.ndarray:
+    """(P,) `usual` (P,), but of these `numbers` (P,), of which it is known that they may differ, the expected
+    variance: over SHARES and none, equally likely beforehand, as these voyages have them. In prior widths
+    squared."""
+    out, shares = usual.copy(), np.array([0.0, *SHARES])
+    for i in np.flatnonzero(numbers).tolist():
+        log = np.array([_foretold(told, _with(usual, i, share**2), pull) for share in shares])
+        weight = np.exp(log - log.max())
+        out[i] = max(usual[i], float(weight @ shares**2) / float(weight.sum()))
+    return out
+
+
 def _with(scatter: np.ndarray, i: int, variance: float) -> np.ndarray:
     out = scatter.copy()
     out[i] = variance

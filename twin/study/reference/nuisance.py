@@ -19,7 +19,7 @@ from twin.study.estimation.columns import (
 )
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
-from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
+from twin.study.reference.between import BetweenVoyages, doubted, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
 HEALTHY_WIDTHS = (
@@ -130,7 +130,10 @@ def known_from(
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [noise_model])[0], sd, temper)
-    usual = np.array([u.varies**2 for u in unknowns])
+    several = told if len(lines) > 1 else []  # two halves of one voyage share its clocks
+    usual = doubted(
+        several, pull, np.array([u.varies**2 for u in unknowns]), np.array([u.age for u in unknowns])
+    )
     return Known(unknowns, tuple(told), scattered(told, pull, usual), usual, pull)
 
 
