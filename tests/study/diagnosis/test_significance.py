@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.diagnosis.consider import change, significance
+from twin.study.diagnosis.consider import change, joint_significance, significance
 from twin.study.diagnosis.refine import refine
 from twin.study.estimation.columns import Unknown
 
@@ -44,6 +44,35 @@ def clear(judged, name, z, covariance):
     all_z[rows] = z
     known = replace(found.posterior, z=all_z, covariance=all_c)
     return significance(case, replace(found, posterior=known), name)
+
+
+def together(judged, z, covariance, intervals):
+    """What is told of a compass whose two numbers are these, with these 95 % intervals."""
+    case, found = judged
+    rows = [i for i, u in enumerate(case.effects) if u.owner == "HeadingBias"]
+    all_z, all_c = np.zeros(len(case.effects)), np.eye(len(case.effects))
+    all_z[rows], all_c[np.ix_(rows, rows)] = z, covariance
+    known = replace(found, posterior=replace(found.posterior, z=all_z, covariance=all_c))
+    names = [case.effects[i].full_name for i in rows]
+    numbers = [{"name": n, "low95": a, "high95": b} for n, (a, b) in zip(names, intervals, strict=True)]
+    return joint_significance(case, known, "HeadingBias", numbers)
+
+
+NEAR = 0.25 - 0.5 * 0.05**2  # covariance of two numbers known to 0.5, and their difference to 0.05
+ALIKE = [[0.25, NEAR], [NEAR, 0.25]]
+
+
+def test_an_effect_of_which_no_number_is_clear_alone_says_how_clear_all_are(judged):
+    around = [(-0.3, 1.7), (-1.0, 1.0)]
+    assert together(judged, [0.7, 0.0], ALIKE, around) == pytest.approx(14.0, rel=0.05)
+
+
+def test_an_effect_with_a_number_that_is_clear_alone_needs_no_such_word(judged):
+    assert together(judged, [0.7, 0.0], ALIKE, [(0.1, 1.7), (-1.0, 1.0)]) is None
+
+
+def test_numbers_that_are_not_clear_together_are_not_called_so(judged):
+    assert together(judged, [0.3, 0.0], [[0.25, 0.0], [0.0, 0.25]], [(-0.7, 1.3), (-1.0, 1.0)]) is None
 
 
 def test_one_number_is_as_clear_as_its_standard_deviations_from_none(judged):
