@@ -1,4 +1,4 @@
-"""How far a calibration is: its stages in order, and how long they still take, by what the run took so far."""
+"""How far a calibration is: its stages in order, and how long they still take, by what this run took."""
 
 from collections.abc import Callable, Sequence
 from itertools import takewhile
