@@ -9,6 +9,7 @@ import pytest
 from twin.physics.effects import catalogue
 from twin.study.diagnosis.consider import change, joint_significance, significance
 from twin.study.diagnosis.refine import refine
+from twin.study.diagnosis.tell_diagnosis import candidate_lines
 from twin.study.estimation.columns import Unknown
 
 
@@ -93,3 +94,25 @@ def test_a_second_number_that_says_nothing_makes_an_effect_no_clearer(judged):
 
 def test_numbers_that_no_chance_makes_are_told_by_their_distance(judged):
     assert clear(judged, "HeadingBias", [60.0, 0.0], np.eye(2)) == pytest.approx(60.0, abs=0.5)
+
+
+def test_the_text_says_why_a_cause_is_named_of_which_no_number_is_clear_alone():
+    """Expected: of what the ship file has, another word; of others, nothing."""
+    number = {"name": "a", "value": 0.7, "low95": -0.3, "high95": 1.7, "unit": "m", "at_box_end": False}
+    cause = {
+        "effect": "AntennaOffset",
+        "probability": 0.9,
+        "together_with": [],
+        "parameters": [number],
+        "typical_force": {"X_N": 0.0, "Y_N": 0.0, "N_Nm": 0.0},
+        "error_horizon_s": 60.0,
+        "error_without": 5.0,
+        "error_with": 2.0,
+        "error_floor": 2.0,
+        "cannot_be_told_from": [],
+        "together_sd": 6.2,
+    }
+    assert "may be none" in "\n".join(candidate_lines(cause)) and "6.2" in "\n".join(candidate_lines(cause))
+    filed = cause | {"parameters": [number | {"in_ship_file": 0.1}]}
+    assert "may be what the ship file has" in "\n".join(candidate_lines(filed))
+    assert "alone" not in "\n".join(candidate_lines(cause | {"together_sd": None}))
