@@ -43,7 +43,11 @@ def diagnosis(name):
         "verdict": "missing",
         "sentence": "Missing: Current (97 %).",
         "missing": ["Current"],
-        "candidates": [CAUSE, CAUSE | {"effect": "VaryingCurrent", "parameters": curve}],
+        "p_value_sentence": "Against healthy voyages: this one is more unusual than all 4 reference voyages.",
+        "candidates": [
+            CAUSE | {"together_sd": 6.2},
+            CAUSE | {"effect": "VaryingCurrent", "parameters": curve},
+        ],
         "moments": [moment],
         "data_checks": [check, check | {"ok": False}],
         "next_manoeuvre": {

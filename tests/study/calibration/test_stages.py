@@ -2,7 +2,7 @@
 
 import pytest
 
-from twin.study.calibration.stages import BASELINE, CORE_STAGES, FIT_STAGES, ONCE_MORE, PATH, Stages
+from twin.study.calibration.stages import AGAIN, BASELINE, CORE_STAGES, FIT_STAGES, ONCE_MORE, PATH, Stages
 
 
 class Clock:
@@ -13,15 +13,16 @@ class Clock:
         return self.s
 
 
-def run(stages: list[str], every: float | None, second_per: float = 1.0) -> list[str]:
-    """What is told when each stage takes `second_per` times its usual seconds."""
+def run(
+    stages: list[str], every: float | None, second_per: float = 1.0, took: dict[str, float] | None = None
+) -> list[str]:
+    """What is told when each stage takes `second_per` times its usual seconds, or what it `took`."""
     said: list[str] = []
     clock = Clock()
     told = Stages(said.append, every, clock)
     for text in stages:
         told(text)
-        usual = FIT_STAGES.get(text, 0.0)
-        clock.s += second_per * usual
+        clock.s += (took or {}).get(text, second_per * FIT_STAGES.get(text, 0.0))
     return said
 
 
@@ -45,6 +46,40 @@ def test_a_second_fit_with_more_voyages_takes_longer_in_proportion():
     assert run([*FIT_STAGES, PATH, ONCE_MORE, *FIT_STAGES, BASELINE], 1.5)[-1].startswith(
         f"{BASELINE} (17 of 17"
     )
+
+
+NOISE = "estimating the noise model"
+
+
+def test_a_stage_of_the_second_fit_is_awaited_as_long_as_it_took_in_the_first():
+    """Test: a small vessel in waves, whose noise model takes ten times as long as usual beside the rest.
+    Expected: by hand, at the path after 17.8 + 49.5 s, the same 67.3 s again and (1.0 + 7.5) * 67.3/17.8 s."""
+    took = {NOISE: 55.0}
+    said = run([*FIT_STAGES, PATH], 1.0, took=took)
+    left = sum(FIT_STAGES.values()) - FIT_STAGES[NOISE] + 55.0
+    left += 8.5 * left / sum(FIT_STAGES.values())
+    assert said[-1] == f"{PATH} (8 of 17, about {left / 60.0:.0f} min left)"
+
+
+def test_what_was_fitted_again_in_the_first_fit_is_awaited_in_the_second_too():
+    """Test: an antenna found in the first fit. Expected: the same stages planned in the second, which has half
+    as many voyages more: by hand 1.0 + 1.5 * (17.8 + 14.0 + 7.5) s."""
+    again = "fitting again, with the antenna where it was found"
+    first = [*FIT_STAGES, again, *CORE_STAGES]
+    said = run([*first, PATH], 1.5)
+    assert said[-1] == f"{PATH} (15 of 31, about 60 s left)"
+    whole = run([*first, PATH, ONCE_MORE, *first, BASELINE], 1.5)
+    assert whole[-1].startswith(f"{BASELINE} (31 of 31")
+    less = run([*first, PATH, ONCE_MORE, *FIT_STAGES, BASELINE], 1.5)
+    assert less[-1].startswith(f"{BASELINE} (31 of 31")
+
+
+def test_two_parts_found_one_after_the_other_are_both_counted():
+    compass, antenna = f"{AGAIN} a compass that deviates", f"{AGAIN} the antenna where it was found"
+    first = [*[*FIT_STAGES][:5], compass, *CORE_STAGES, antenna, *CORE_STAGES]
+    said = run([*first, PATH, ONCE_MORE, *first, BASELINE], 2.0)
+    assert [s.split(" (")[1].split(" of ")[0] for s in said] == [str(i + 1) for i in range(len(said))]
+    assert said[-1].startswith(f"{BASELINE} ({len(said)} of {len(said)}")
 
 
 def test_a_core_that_is_fitted_again_is_counted_once_more():

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.diagnosis.consider import change, significance
+from twin.study.diagnosis.consider import change, joint_significance, significance
 from twin.study.diagnosis.refine import refine
+from twin.study.diagnosis.tell_diagnosis import candidate_lines
 from twin.study.estimation.columns import Unknown
 
 
@@ -46,6 +47,35 @@ def clear(judged, name, z, covariance):
     return significance(case, replace(found, posterior=known), name)
 
 
+def together(judged, z, covariance, intervals):
+    """What is told of a compass whose two numbers are these, with these 95 % intervals."""
+    case, found = judged
+    rows = [i for i, u in enumerate(case.effects) if u.owner == "HeadingBias"]
+    all_z, all_c = np.zeros(len(case.effects)), np.eye(len(case.effects))
+    all_z[rows], all_c[np.ix_(rows, rows)] = z, covariance
+    known = replace(found, posterior=replace(found.posterior, z=all_z, covariance=all_c))
+    names = [case.effects[i].full_name for i in rows]
+    numbers = [{"name": n, "low95": a, "high95": b} for n, (a, b) in zip(names, intervals, strict=True)]
+    return joint_significance(case, known, "HeadingBias", numbers)
+
+
+NEAR = 0.25 - 0.5 * 0.05**2  # covariance of two numbers known to 0.5, and their difference to 0.05
+ALIKE = [[0.25, NEAR], [NEAR, 0.25]]
+
+
+def test_an_effect_of_which_no_number_is_clear_alone_says_how_clear_all_are(judged):
+    around = [(-0.3, 1.7), (-1.0, 1.0)]
+    assert together(judged, [0.7, 0.0], ALIKE, around) == pytest.approx(14.0, rel=0.05)
+
+
+def test_an_effect_with_a_number_that_is_clear_alone_needs_no_such_word(judged):
+    assert together(judged, [0.7, 0.0], ALIKE, [(0.1, 1.7), (-1.0, 1.0)]) is None
+
+
+def test_numbers_that_are_not_clear_together_are_not_called_so(judged):
+    assert together(judged, [0.3, 0.0], [[0.25, 0.0], [0.0, 0.25]], [(-0.7, 1.3), (-1.0, 1.0)]) is None
+
+
 def test_one_number_is_as_clear_as_its_standard_deviations_from_none(judged):
     assert clear(judged, "GyroBias", [0.7], [[0.04]]) == pytest.approx(3.5)
 
@@ -64,3 +94,25 @@ def test_a_second_number_that_says_nothing_makes_an_effect_no_clearer(judged):
 
 def test_numbers_that_no_chance_makes_are_told_by_their_distance(judged):
     assert clear(judged, "HeadingBias", [60.0, 0.0], np.eye(2)) == pytest.approx(60.0, abs=0.5)
+
+
+def test_the_text_says_why_a_cause_is_named_of_which_no_number_is_clear_alone():
+    """Expected: of what the ship file has, another word; of others, nothing."""
+    number = {"name": "a", "value": 0.7, "low95": -0.3, "high95": 1.7, "unit": "m", "at_box_end": False}
+    cause = {
+        "effect": "AntennaOffset",
+        "probability": 0.9,
+        "together_with": [],
+        "parameters": [number],
+        "typical_force": {"X_N": 0.0, "Y_N": 0.0, "N_Nm": 0.0},
+        "error_horizon_s": 60.0,
+        "error_without": 5.0,
+        "error_with": 2.0,
+        "error_floor": 2.0,
+        "cannot_be_told_from": [],
+        "together_sd": 6.2,
+    }
+    assert "may be none" in "\n".join(candidate_lines(cause)) and "6.2" in "\n".join(candidate_lines(cause))
+    filed = cause | {"parameters": [number | {"in_ship_file": 0.1}]}
+    assert "may be what the ship file has" in "\n".join(candidate_lines(filed))
+    assert "alone" not in "\n".join(candidate_lines(cause | {"together_sd": None}))

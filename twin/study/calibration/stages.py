@@ -1,7 +1,9 @@
-"""How far a calibration is: its stages in order, and how long each takes beside the others."""
+"""How far a calibration is: its stages in order, and how long they still take, by what this run took."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import takewhile
 from time import monotonic
+from typing import NamedTuple
 
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
@@ -23,9 +25,18 @@ PATH, ONCE_MORE, BASELINE = (
 )
 
 
+class Planned(NamedTuple):
+    """A stage that is to come, or was."""
+
+    words: str  # the first ones of what is told
+    usual_s: float  # how long it takes for four voyages of twenty minutes
+    every: float = 1.0  # times as many voyages as the first fit has
+
+
 class Stages:
     """Told each stage of a calibration in words; tells it on with which of how many it is, and about how long
-    it still takes.
+    it still takes: a stage that this run has had before, as long as it took then; any other its usual seconds
+    times by how much slower than usual those were that this run has had.
 
     `every`: how many times as many voyages the second fit has as the first [1]; None where there is one fit.
     """
@@ -36,31 +47,64 @@ class Stages:
         every: float | None,
         clock: Callable[[], float] = monotonic,
     ) -> None:
-        self._tell, self._clock, self._began = tell, clock, clock()
-        second = [] if every is None else [(ONCE_MORE, 0.0), *((s, every * w) for s, w in FIT_STAGES.items())]
-        self._plan = [*FIT_STAGES.items(), (PATH, 1.0), *second, (BASELINE, 7.5 * (every or 1.0))]
+        self._tell, self._clock, self._began, self._every = tell, clock, clock(), every or 1.0
+        first = [Planned(*stage) for stage in FIT_STAGES.items()]
+        second = [] if every is None else self._once_more(first)
+        self._plan = [*first, Planned(PATH, 1.0), *second, Planned(BASELINE, 7.5, self._every)]
         self._at = -1
+        self._took: dict[
+            str, float
+        ] = {}  # [s] of a stage when it was last done, with the first fit's voyages
 
     def __call__(self, text: str) -> None:
-        if text.startswith(AGAIN):  # in place of what was left of the core as it was
-            rest = self._plan[self._at + 1 :]
-            while rest and rest[0][0] in CORE_STAGES:
-                rest = rest[1:]
-            self._plan[self._at + 1 :] = [(AGAIN, 0.0), *CORE_STAGES.items(), *rest]
+        if text.startswith(AGAIN):
+            self._begun_again()
         later = range(self._at + 1, len(self._plan))
-        found = next((i for i in later if text.startswith(self._plan[i][0])), None)
+        found = next((i for i in later if text.startswith(self._plan[i].words)), None)
         if found is None:
             return self._tell(text)
+        self._end_stage()
         self._at = found
         self._tell(f"{text} ({found + 1} of {len(self._plan)}{self._left()})")
 
+    def _once_more(self, first: Sequence[Planned]) -> list[Planned]:
+        """The stages of the second fit, which are those of the first."""
+        return [Planned(ONCE_MORE, 0.0), *(p._replace(every=self._every) for p in first)]
+
+    def _begun_again(self) -> None:
+        """The core once more, in place of what was left of it as it was; in a second fit, too, that is still
+        to come."""
+        done, rest = self._plan[: self._at + 1], self._plan[self._at + 1 :]
+        left = list(takewhile(lambda p: p.words in (AGAIN, *CORE_STAGES), rest))
+        if any(p.words == AGAIN for p in left):
+            return
+        every = done[-1].every if done else 1.0
+        done += [Planned(AGAIN, 0.0, every), *(Planned(*stage, every) for stage in CORE_STAGES.items())]
+        path, *others = rest[len(left) :]
+        if others and others[0].words == ONCE_MORE:
+            others = [*self._once_more(done), others[-1]]
+        self._plan = [*done, path, *others]
+
+    def _end_stage(self) -> None:
+        """The stage that is told now ends the one before."""
+        now = self._clock()
+        if self._at >= 0:
+            p = self._plan[self._at]
+            self._took[p.words] = (now - self._began) / p.every
+        self._began = now
+
     def _left(self) -> str:
-        """About how long the other stages take; "" where that is not known yet, or nearly nothing."""
-        done = sum(w for _, w in self._plan[: self._at])
-        every = sum(w for _, w in self._plan)
-        if done < SHOWN_FROM * every:
+        """About how long this stage and the rest take; "" where that is not known yet, or nearly nothing."""
+        done, rest = self._plan[: self._at], self._plan[self._at :]
+        usual_s = sum({p.words: p.usual_s for p in done if p.words in self._took}.values())
+        if not usual_s or _usual_s(done) < SHOWN_FROM * _usual_s(self._plan):
             return ""
-        left_s = (self._clock() - self._began) * (every - done) / done
+        slower = sum(self._took.values()) / usual_s
+        left_s = sum(p.every * self._took.get(p.words, slower * p.usual_s) for p in rest)
         if left_s < LEAST_LEFT_S:
             return ""
         return f", about {left_s:.0f} s left" if left_s < 90.0 else f", about {left_s / 60.0:.0f} min left"
+
+
+def _usual_s(stages: Sequence[Planned]) -> float:
+    return sum(p.every * p.usual_s for p in stages)

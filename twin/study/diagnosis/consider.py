@@ -3,6 +3,7 @@ decided."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.rarity import deviations
 from twin.study.estimation.start import wave_period_s
+from twin.study.instruments.findings import P95
 from twin.study.reference.evidence import Hypothesis
 from twin.study.reference.healthy import Healthy, compared, score
 from twin.study.reference.seaway import at_sea
@@ -216,6 +218,18 @@ def significance(case: Case, found: Found, name: str) -> float:
     bias, and what of it turned the velocity, are each uncertain, and their difference clear)."""
     own = np.array([i for i, u in enumerate(case.effects) if u.owner == name])
     return deviations(found.posterior.z[own], found.posterior.covariance[np.ix_(own, own)])
+
+
+def joint_significance(
+    case: Case, found: Found, name: str, numbers: Sequence[Mapping[str, Any]]
+) -> float | None:
+    """How far all numbers of this effect together are from none, or from the ship file's [standard deviations
+    of one], where the 95 % interval of each alone holds that; None where one is clear alone, or not even all
+    are."""
+    none = {u.full_name: u.centre for u in case.effects if u.owner == name}
+    alone = any(not p["low95"] <= none[p["name"]] <= p["high95"] for p in numbers)
+    together = significance(case, found, name)
+    return together if len(numbers) > 1 and not alone and together > P95 else None
 
 
 def change(case: Case, found: Found, name: str) -> float:

@@ -12,12 +12,13 @@ from twin.recording.checks import of_voyages
 from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
+from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.answer import SearchAnswer, answer
 from twin.study.diagnosis.assemble import assemble, unjudged_because
 from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of_unknown
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.consider import Considered
+from twin.study.diagnosis.consider import Considered, joint_significance
 from twin.study.diagnosis.further import with_further
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
@@ -91,6 +92,7 @@ def diagnose(
         "data_checks": checks,
         "facts": considered.facts.as_json(),
     }
+    result["p_value_sentence"] = healthy_in_words(result)
     result["sentence"] = told.decision.sentence(result)
     return Diagnosed(plain(result), case, found)
 
@@ -170,6 +172,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
     if not sets:
         return {}
     best = found[sets[0]]
+    numbers = parameters(case, sized(case, best), name)
     return {
         "effect": name,
         "belongs_to": case.catalogue[name].belongs_to,
@@ -178,7 +181,10 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         else of_cause(considered.facts, told.decision, name, posterior),
         "posterior": capped(posterior),
         "on_references": _on_references(considered, name),
-        "parameters": parameters(case, sized(case, best), name),
+        "parameters": numbers,
+        "together_sd": joint_significance(case, best, name, numbers)
+        if name in told.decision.missing
+        else None,
         "typical_force": typical_force(case, best, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": _without(case, found, considered, name),

@@ -173,6 +173,15 @@ def why_not(c: Result, reason: str) -> str:
     }[reason]
 
 
+def only_together(c: Result) -> str:
+    """Why a cause is named although none of its numbers is sure by itself."""
+    same = "what the ship file has" if any("in_ship_file" in p for p in c["parameters"]) else "none"
+    return (
+        f"each of its numbers alone may be {same}, for its 95 % interval holds that; all together are "
+        f"{num(c['together_sd'])} standard deviations from it, so that it is named"
+    )
+
+
 def by_name(result: Result) -> Result:
     """The candidates by their effect."""
     return {c["effect"]: c for c in result["candidates"]}

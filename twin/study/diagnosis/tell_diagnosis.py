@@ -5,6 +5,7 @@ from typing import Any
 from twin.num import as_given, num, percent, readable
 from twin.recording.checks import whose
 from twin.study.diagnosis import sentences as say
+from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import waves_in_words
 from twin.study.track.jumps import jumps_in_words
@@ -28,7 +29,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"nothing missing: {percent(chances['nothing_missing'])}   something unknown: "
         f"{percent(chances['unknown'])}   (each as often as on random ships with such an answer)"
     )
-    lines.append(_healthy(result))
+    lines.append(healthy_in_words(result))
     if result["next_manoeuvre"]:
         m = result["next_manoeuvre"]
         lines += [
@@ -50,19 +51,6 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
             f"{', '.join(result['not_visible'])}."
         )
     return lines
-
-
-def _healthy(result: dict[str, Any]) -> str:
-    """How rare the voyage would be on this ship in health."""
-    if result.get("p_value") is None:
-        return (
-            "against healthy voyages: not computed, the ship file lacks the scores of its reference voyages "
-            "(calibrate again)"
-        )
-    return (
-        f"against healthy voyages: p = {num(result['p_value'])} by {result['p_value_references']} reference "
-        f"voyages, which can show {num(result['p_value_at_best'])} at best"
-    )
 
 
 def weather_lines(weather: list[dict[str, Any]]) -> list[str]:
@@ -119,6 +107,8 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
     if changes(c.get("over_time", ())):
         lines.append("          its size changes with time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
+    if c.get("together_sd"):
+        lines.append(f"          {say.only_together(c)}")
     if c["cannot_be_told_from"]:
         lines.append(f"          cannot be told apart from {', '.join(c['cannot_be_told_from'])}")
     return lines

@@ -1,0 +1,42 @@
+"""What the p-value of a diagnosis means, in words an owner can act on (the number: reference/healthy.py)."""
+
+from typing import Any
+
+ONE_IN = 20  # healthy voyages, one of which is rare: the 95 % of every interval
+
+
+def healthy_in_words(result: dict[str, Any]) -> str:
+    """Whether the voyages are more unusual than this ship's healthy ones, and how many more of these would be
+    needed to tell."""
+    if result.get("p_value") is None:
+        return (
+            "Against healthy voyages: not computed, the ship file lacks the scores of its reference voyages "
+            "(calibrate again)."
+        )
+    count, asked = result["p_value_references"], len(result["voyages"])
+    reach = round(count * result["facts"]["reached"])
+    this = "this one" if asked == 1 else f"the most unusual of these {asked}"
+    if reach:
+        return (
+            f"Against healthy voyages: {reach} of this ship's {count} reference voyages, with nothing wrong, "
+            f"{'was' if reach == 1 else 'were'} as unusual as {this}."
+        )
+    return (
+        f"Against healthy voyages: {this} is more unusual than all {count} reference voyages of this ship. "
+        f"{_by_chance(count, asked)}"
+    )
+
+
+def _by_chance(count: int, asked: int) -> str:
+    """How often healthy voyages are so, and how many more references could show that these are not."""
+    often = f"one healthy voyage in {count + 1} is so by chance"
+    if asked > 1:
+        most = min(asked, count + 1)
+        often = f"of {asked} healthy voyages one is so by chance in up to {most} of {count + 1} cases"
+    more = ONE_IN * asked - 1 - count
+    if more <= 0:
+        return f"At most {often}." if asked == 1 else f"{often.capitalize()}."
+    return (
+        f"With {count} of them that shows little: {often}. {more} more reference "
+        f"voyage{'s' * (more > 1)} could show that it is as rare as one in {ONE_IN}."
+    )
