@@ -19,8 +19,10 @@ def said(references: int, reach: int, asked: int = 1) -> str:
 
 
 def test_a_voyage_like_others_of_the_healthy_ship_is_told_as_that():
-    assert "2 of this ship's 4 reference voyages, with nothing wrong, were as unusual as this one." in said(
-        4, 2
+    told = said(4, 2)
+    assert (
+        "2 of this ship's 4 reference voyages, with nothing wrong, were as unusual as this one (p = 0.6"
+        in told
     )
     assert "1 of this ship's 4 reference voyages, with nothing wrong, was as unusual" in said(4, 1)
     assert "the most unusual of these 3" in said(4, 1, asked=3)

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from twin.num import num
+
 ONE_IN = 20  # healthy voyages, one of which is rare: the 95 % of every interval
 
 
@@ -14,16 +16,16 @@ def healthy_in_words(result: dict[str, Any]) -> str:
             "(calibrate again)."
         )
     count, asked = result["p_value_references"], len(result["voyages"])
-    reach = round(count * result["facts"]["reached"])
+    reach, p = round(count * result["facts"]["reached"]), num(result["p_value"])
     this = "this one" if asked == 1 else f"the most unusual of these {asked}"
     if reach:
         return (
             f"Against healthy voyages: {reach} of this ship's {count} reference voyages, with nothing wrong, "
-            f"{'was' if reach == 1 else 'were'} as unusual as {this}."
+            f"{'was' if reach == 1 else 'were'} as unusual as {this} (p = {p})."
         )
     return (
-        f"Against healthy voyages: {this} is more unusual than all {count} reference voyages of this ship. "
-        f"{_by_chance(count, asked)}"
+        f"Against healthy voyages: {this} is more unusual than all {count} reference voyages of this ship "
+        f"(p = {p}). {_by_chance(count, asked)}"
     )
 
 
