@@ -20,6 +20,7 @@ from twin.live.certificate.plant import (
     HEADING_NOISE,
     Disturbance,
     Plant,
+    as_disturbance,
     lipschitz,
     output_bound,
     plant_of,
@@ -174,8 +175,14 @@ class Certificate(Promise):
         bounds = (*self.noise, self.heading_noise, *self.saturation, *self.disturbance.numbers)
         noisy = len(bounds) == 17 and all(isfinite(x) and x >= 0.0 for x in bounds)
         told = all(getattr(self, name) == x for name, x in _fields(again).items())
-        reached = self.reach is None or self.reach.operating.ranges == self.operating.reach
-        return positive and noisy and self.plant.whole and reached and told
+        return positive and noisy and self.plant.whole and told and self._reaches()
+
+    def _reaches(self) -> bool:
+        """Whether the wider set, where there is one, belongs to this one and has all of its numbers."""
+        if (far := self.reach) is None:
+            return True
+        belongs = far.operating.ranges == self.operating.reach and far.inertia == self.plant.inertia
+        return belongs and far.bounded and self.in_reach().h == self.h
 
 
 def certify(
@@ -212,7 +219,7 @@ def certify(
     delays = [delay_samples] * 3 if isinstance(delay_samples, int) else [*delay_samples]
     check(three(1.0 if K is None else K), h, delays, noise)
     m: Ages = (delays[0], delays[1], delays[2])
-    d = _bound_of(disturbance) or usual_disturbance(model)
+    d = as_disturbance(disturbance) or usual_disturbance(model)
     d = replace(d, calm=c3.add(d.calm, saturation))
     numbers = movable(model.effects, model.ship) if adapted else ()
     operating = operating_set or of_ship(model)
@@ -277,12 +284,6 @@ def on_board(
         "inner": inner,
         "reach": True,
     }
-
-
-def _bound_of(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:
-    if disturbance is None or isinstance(disturbance, Disturbance):
-        return disturbance
-    return Disturbance(c3.row(disturbance))
 
 
 def digest(table: dict[str, Any]) -> str:

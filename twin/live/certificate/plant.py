@@ -114,6 +114,13 @@ class Disturbance:
         return noise + self.motion[3] * H_s
 
 
+def as_disturbance(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:
+    """A force that is the same in any sea as a Disturbance."""
+    if disturbance is None or isinstance(disturbance, Disturbance):
+        return disturbance
+    return Disturbance(c3.row(disturbance))
+
+
 def plant_of(
     model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = (), by_cell: bool = False
 ) -> Plant:
