@@ -114,8 +114,17 @@ def test_what_is_beyond_both_sets_is_said_with_the_ends_of_the_wider_one(c):
 def test_the_file_keeps_the_wider_set_and_one_of_another_ship_is_refused(c):
     """Expected: the same certificate again; a wider set that does not belong to the usual one is no certificate."""
     assert Certificate.from_json(c.to_json()) == c
-    table = json.loads(c.to_json())
-    table["reach"]["operating"]["ranges"]["r"] = [-1.0, 1.0]
-    version, _ = table.pop("version"), table.pop("sha256")
-    with pytest.raises(ValueError, match="does not follow"):
-        Certificate.from_json(json.dumps({"version": version, "sha256": digest(table), **table}))
+    for name, value in (
+        ("operating", None),
+        ("most", [0.1, -0.1, 0.1]),
+        ("bend", c.plant.bend),
+        ("moved", []),
+    ):
+        table = json.loads(c.to_json())
+        if value is None:
+            table["reach"]["operating"]["ranges"]["r"] = [-1.0, 1.0]
+        else:
+            table["reach"][name] = value
+        version, _ = table.pop("version"), table.pop("sha256")
+        with pytest.raises(ValueError, match="does not follow"):
+            Certificate.from_json(json.dumps({"version": version, "sha256": digest(table), **table}))

@@ -182,7 +182,7 @@ class Certificate(Promise):
         if (far := self.reach) is None:
             return True
         belongs = far.operating.ranges == self.operating.reach and far.inertia == self.plant.inertia
-        return belongs and far.bounded and self.in_reach().h == self.h
+        return belongs and far.bounded and far == far.at_period(self.h)
 
 
 def certify(

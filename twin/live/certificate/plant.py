@@ -53,8 +53,11 @@ class Plant:
 
     @property
     def bounded(self) -> bool:
-        """Whether no slope and no rate is endless."""
-        return all(isfinite(x) for row in (*self.magnitude(), self.heading, self.most) for x in row)
+        """Whether no slope and no rate is endless, and none that is a size is negative."""
+        sizes = (*self.heading, *self.most, *self.moved)
+        slopes = (x for row in (*self.lo, *self.hi, *self.bend) for x in row)
+        whole = len(self.heading) == len(self.most) == len(self.moved) == len(AXES)
+        return whole and all(map(isfinite, (*sizes, *slopes))) and min(sizes) >= 0.0
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""
