@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from math import cos, radians, sin
 from typing import NamedTuple
 
+import numpy as np
+
 from bench.lie_kinds import Row
 from twin.live.loop import Loop
 from twin.live.signals.derive import turn
@@ -70,7 +72,7 @@ def _moved_by(loop: Loop, voyage: SplitVoyage, k: int, row: Row) -> Tau:
     delta, n = radians(row[CONTROLS[0]]), row[CONTROLS[1]] / 60.0
     thrust = core.thrust(u, n, c)
     parts = core.propeller(thrust, c), core.rudder(u, v, r, delta, thrust, c)
-    X, Y, N = (float(a) + float(b) for a, b in zip(*parts, strict=True))  # type: ignore[arg-type]
+    X, Y, N = np.array(parts, float).sum(axis=0).tolist()
     return X, Y, N
 
 
