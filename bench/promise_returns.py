@@ -76,12 +76,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", type=long_enough, default=900.0, metavar="S", help="of a healthy voyage (default: 900)"
     )
+    parser.add_argument("--seed", type=int, default=17, help="of the healthy voyages (default: 17)")
     parser.add_argument("--no-lies", action="store_true", help="healthy voyages only")
     bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    healthy = [row for hull in args.hull or HULLS for row in withdrawn(hull, args.seconds)]
+    healthy = [row for hull in args.hull or HULLS for row in withdrawn(hull, args.seconds, args.seed)]
     told = [] if args.no_lies else [(hull, rate) for hull in args.hull or HULLS for rate in LIE_RATES[hull]]
     back = [row for hull, rate in told for row in returns(rate, hull)]
     result = {"healthy": [r._asdict() for r in healthy], "lies": [r._asdict() for r in back]}
@@ -103,10 +104,10 @@ def long_enough(text: str) -> float:
     return seconds
 
 
-def withdrawn(hull: str, seconds: float) -> Iterator[Withdrawn]:
+def withdrawn(hull: str, seconds: float, seed: int) -> Iterator[Withdrawn]:
     """One hull, calm and in waves, at each pair of rates."""
     for sea, weathers in WEATHERS.items():
-        case = SeaCase(hull, "mixed", weathers[HULLS.index(hull)], seed=17, duration_s=seconds)
+        case = SeaCase(hull, "mixed", weathers[HULLS.index(hull)], seed=seed, duration_s=seconds)
         (recording,) = simulate([case], 1.0 / SEA_HZ)
         rows = list(rows_of(recording))
         for log_hz, loop_hz in RATES:
