@@ -95,3 +95,25 @@ def test_earth_fixed_velocities_without_a_position_are_proved_by_a_turn_and_not_
     answer = answers(boat)["velocity_frame"]
     assert "earth-fixed" in answer.text and not answer.ok
     assert answer.unusable is proved
+
+
+@pytest.mark.parametrize("leaps_deg, proved", [(0.0, False), (40.0, True)])
+def test_a_turn_of_which_a_sample_is_missing_is_no_compass_that_jumps(leaps_deg, proved):
+    """Test: a boat in a zigzag, its course behind its heading as it slides, one sample in 17 missing; and
+    the same boat with a compass that jumps where a sample is missing. Expected: only the jump is one."""
+    t = np.arange(0.0, 900.0)
+    psi = 20.0 + 10.0 * np.sin(2.0 * np.pi * t / 13.0)
+    course = 20.0 + 5.0 * np.sin(2.0 * np.pi * t / 13.0 - 1.0)
+    over_ground = 10.0 * np.exp(1j * np.radians(course))
+    way, there = np.cumsum(over_ground), t % 17.0 != 5.0
+    shown = psi + leaps_deg * (t > 497.0)
+    ahead = over_ground * np.exp(-1j * np.radians(shown))
+    boat = voyage(
+        t[there],
+        north_m=way.real[there],
+        east_m=way.imag[there],
+        surge_velocity_mps=ahead.real[there],
+        sway_velocity_mps=ahead.imag[there],
+        **{HEADING: shown[there], RUDDER: 9.0 * np.sign(np.cos(2.0 * np.pi * t / 13.0))[there]},
+    )
+    assert answers(boat)["heading_steps"].unusable == proved

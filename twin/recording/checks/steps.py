@@ -248,8 +248,12 @@ def jump(view: VoyageView, s: StepSamples) -> Check | None:
 
 
 def at_once(s: StepSamples, i: int) -> bool:
-    """Whether the heading steps at once: what turns faster and slower is a turn, however quick."""
-    return bool(np.sum(np.abs(s.own[max(i - 1, 0) : i + 2]) > OWN * abs(s.odd[i])) == 1)
+    """Whether the heading steps at once: what turns faster and slower is a turn, however quick, and however
+    long the wait for one of its samples."""
+    near = slice(max(i - 1, 0), i + 2)
+    waits = np.maximum(np.diff(s.t)[near], 1e-9)
+    own, odd = np.abs(s.own[near]) / waits, abs(s.odd[i]) / max(s.t[i + 1] - s.t[i], 1e-9)
+    return bool(np.sum(own > OWN * odd) == 1)
 
 
 def stays(s: StepSamples, i: int) -> bool:
