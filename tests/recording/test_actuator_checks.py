@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from bench.small_boats import KINDS, MISTAKES, healthy, sailed, ship_of
@@ -124,3 +125,14 @@ def test_a_vessel_of_thrusters_may_turn_on_the_spot(sail):
     tug = replace(tanker, actuators=ship_of("thrusters").actuators)
     assert not ship_size(VoyageView(turns, tanker)).ok
     assert ship_size(VoyageView(turns, tug)).ok
+
+
+@pytest.mark.parametrize("knots, fits", [(22.0, True), (40.0, False)])
+def test_a_planing_boat_is_no_other_ship_for_going_as_fast_as_its_file_says(knots, fits):
+    """Test: a boat of 12 m with a service speed of 20 knots in its ship file, which is a Froude number of 0.95.
+    Expected: a voyage at 22 knots is its own; at 40 knots it may be another ship's."""
+    boat = replace(ship_of("thrusters"), L_pp=12.0, U_0=10.3)
+    t = np.arange(0.0, 600.0)
+    ahead = np.full(t.size, 0.5144 * knots)
+    straight = {"surge_velocity_mps": ahead, "sway_velocity_mps": 0.0 * t, "yaw_rate_degps": 0.0 * t}
+    assert ship_size(VoyageView(Voyage("v", t, straight), boat)).ok == fits

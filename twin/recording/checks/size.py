@@ -7,7 +7,9 @@ from twin.recording.checks.check_result import Check, cannot_tell, doubtful, goo
 from twin.recording.checks.voyage_view import VoyageView
 
 G = 9.81  # [m/s2]
-FASTEST_FROUDE = 0.7  # U / sqrt(g L); a displacement hull stays below 0.5
+# U / sqrt(g L): what a displacement hull stays below, and what is too fast for it; for a hull whose own
+# service speed is faster, as many times that
+DISPLACEMENT_FROUDE, FASTEST_FROUDE = 0.5, 0.7
 TIGHTEST_TURN = 2.0  # r L / U; the tightest turning circles of ships reach 1
 WAVE_S = 3.0  # yawing in waves is shorter than this on a boat
 SHORT_S = 480.0
@@ -21,7 +23,8 @@ def ship_size(view: VoyageView) -> Check:
     if view.ship is None:
         return cannot_tell(name, "give --ship to compare speed, turning and draught with its size.")
     length, speed = float(view.ship.L_pp), view.speed
-    froude = speed / np.sqrt(G * length)
+    wave = np.sqrt(G * length)
+    froude, own = speed / wave, float(view.ship.U_0) / wave
     turning = tightest(view, length)
     draught = float(np.nanmedian(view.voyage["draught_mean_m"])) if view.voyage.has("draught_mean_m") else 0.0
     saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {as_given(length, 4)} m"
@@ -29,7 +32,7 @@ def ship_size(view: VoyageView) -> Check:
         f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is "
         f"{as_given(length, 4)} m long."
     )
-    if froude > FASTEST_FROUDE:
+    if froude > FASTEST_FROUDE * max(1.0, own / DISPLACEMENT_FROUDE):
         return doubtful(name, f"{saw}: {num(speed, 3)} m/s is too fast for it. {other}")
     if turning > TIGHTEST_TURN and not view.ship.actuators:  # thrusters turn a vessel on the spot
         return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
