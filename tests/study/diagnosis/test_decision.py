@@ -185,19 +185,22 @@ def test_in_a_sea_a_force_is_named_only_where_the_model_alone_leads_astray():
 
 
 def test_every_reason_for_not_naming_has_words_of_its_own():
-    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0, "posterior": 0.85}
+    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0, "posterior": 0.85, "probability": 0.42}
     reasons = [*(rule.reason for rule in CAUSE_RULES), SECOND_NOT_SURE]
     said = {reason: words(c, reason) for reason in reasons}
     both = said.pop("change_within_form")
     assert both == said["not_significant"]
     assert len(set(said.values())) == len(said)
-    assert said["unlikely"] == "its posterior probability, 85 %, is below the 90 % needed to name it"
+    assert said["unlikely"] == (
+        "its posterior probability, 85 %, is below the 90 % needed to name it (42 %: how often such an answer "
+        "was true)"
+    )
 
 
 def test_a_cause_that_brings_nothing_beside_the_others_is_not_told_with_numbers_that_say_it_does():
     """Test: the model alone ends 0.82 m off and with the whole explanation 0.57 m, but with the other effects of
     it 0.55 m. Expected: no "does not reduce the error (0.57 m with it, 0.82 m without)"."""
-    c = {"parameters": [], "error_with": 0.57, "error_without": 0.82, "posterior": 1.0}
+    c = {"parameters": [], "error_with": 0.57, "error_without": 0.82, "posterior": 1.0, "probability": 1.0}
     said = words(c, "no_nearer")
     assert "with the other effects alone, or with fewer of them" in said and "0.570 m with it" in said
     assert "0.820" not in said and "0.820 m without" in words(c | {"error_with": 0.9}, "no_nearer")
@@ -218,7 +221,7 @@ def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
     said = answer.sentence({"candidates": [c], "answer": {"not_named": answer.not_named}})
     assert said == (
         "Undecided: the readings ask for HullFouling (42 %), but its posterior probability, 85 %, is below the "
-        "90 % needed to name it."
+        "90 % needed to name it (42 %: how often such an answer was true)."
     )
 
 

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from twin.physics.effects import catalogue
+from twin.study.diagnosis.effect_diagnosis import askable, too_small
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.verdict import MOST_SAID, Weights, capped, group, rivals, weights
 from twin.study.reference.evidence import Hypothesis
@@ -115,3 +116,13 @@ def test_rivals_are_told_with_how_far_they_are_behind_and_where_they_lead():
     first, second = rivals(weighed, {("RudderWear",): Found(weighed[0], None, None, 0.0, 4.2, 5.0)})
     assert first == {"effects": ["RudderWear"], "scenario": "usual", "log_bayes_factor": 0.0, "error_m": 4.2}
     assert second["effects"] == [] and second["log_bayes_factor"] == -7.0 and second["error_m"] is None
+
+
+def test_what_the_answer_lists_is_not_also_too_small_to_be_seen_and_the_next_manoeuvre_asks_about_it():
+    """Test: a rudder's offset that at a plausible size would not have been seen, and is likely at twice that.
+    Expected: listed, it is not said to be too small; unlikely, it is; likely, a manoeuvre is sought for it."""
+    seen = {"RudderOffset": False, "RudderWear": False, "SpeedLogBias": True}
+    assert too_small(seen, ["RudderOffset"]) == ["RudderWear"]
+    assert too_small(seen, []) == ["RudderOffset", "RudderWear"]
+    posteriors = {"RudderOffset": 0.85, "RudderWear": 0.01, "SpeedLogBias": 0.01}
+    assert askable(posteriors, seen) == ["RudderOffset", "SpeedLogBias"]

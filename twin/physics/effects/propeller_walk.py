@@ -12,8 +12,8 @@ from twin.physics.state import Situation
 
 
 class PropellerWalk(Force):
-    """The single screw pushes its stern to one side, the more the harder it turns: the ship
-    needs trim rudder to go straight, at any speed."""
+    """The screw pushes the stern to one side, the more the harder it turns (of two, one gives less than
+    the other): the ship needs trim rudder to go straight, at any speed."""
 
     one_screw = True
     source = "Brix (1993) Manoeuvring Technical Manual (side force of a single screw)"

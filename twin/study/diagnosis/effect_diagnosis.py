@@ -1,7 +1,7 @@
 """`twin diagnose`: which physical effect is missing, in newtons, with its confidence, or an honest answer
 that is none."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -84,7 +84,7 @@ def diagnose(
             "error_floor": base.expected_error_m,
         },
         "next_manoeuvre": _next(told, listed, progress),
-        **_circumstances(told),
+        **_circumstances(told, [c["effect"] for c in listed]),
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
         "jumps": jumps_on(case.tracks),
@@ -131,11 +131,17 @@ def _listed(told: SearchAnswer, progress: Callable[[str], None]) -> list[dict[st
     return listed
 
 
-def _circumstances(told: SearchAnswer) -> dict[str, Any]:
+def too_small(seen: Mapping[str, bool], listed: Collection[str]) -> list[str]:
+    """Effects that could not be seen at a plausible size; not those that the answer lists at their own
+    (`listed`), which were seen because they are larger."""
+    return [name for name, can in seen.items() if not can and name not in listed]
+
+
+def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
     """What could not be judged or seen, the water and wind of these voyages, and the noise they were judged
-    under."""
+    under. `listed`: what the answer gives the numbers of."""
     case, noise_model = told.case, told.case.noise_model
-    told_already = [*told.decision.missing, *case.as_before, *case.present]
+    told_already = [*told.decision.missing, *listed, *case.as_before, *case.present]
     return {
         "not_judged": _not_possible(case),
         "weather": [
@@ -144,7 +150,7 @@ def _circumstances(told: SearchAnswer) -> dict[str, Any]:
             if share >= SOME
         ],
         "as_on_references": list(case.as_before),
-        "not_visible": [n for n, can in told.seen.items() if not can and n not in told_already],
+        "not_visible": too_small(told.seen, told_already),
         "floor": {
             "share_surge_sway_yaw": noise_model.share,
             "sensor_factor": noise_model.sensor,
@@ -250,7 +256,7 @@ def _next(
         None,
     )
     effects, one_of = told.weights.effects, told.considered.facts.one_of
-    asked = one_of if decision.reason == "one_of" else [n for n in effects if told.seen[n]]
+    asked = one_of if decision.reason == "one_of" else askable(effects, told.seen)
     if rivals is None and decision.verdict == "undecided" and len(asked) > 1:
         first, second, *_ = sorted(asked, key=lambda n: -effects[n])
         rivals = (first, second)
@@ -260,6 +266,12 @@ def _next(
     sets = [s for s in found if rivals[0] in s]
     z = found[sets[0]].posterior.z if sets else np.ones(len(case.effects))
     return next_manoeuvre(case, case.model, *rivals, z)
+
+
+def askable(effects: Mapping[str, float], seen: Mapping[str, bool]) -> list[str]:
+    """The effects (with their posteriors [1]) that a manoeuvre may tell apart: what would have been seen at a
+    plausible size, and what is likely at its own."""
+    return [name for name, p in effects.items() if seen[name] or p >= LEAST_PROBABILITY]
 
 
 def _not_possible(case: Case) -> list[dict[str, Any]]:

@@ -160,7 +160,8 @@ def why_not(c: Result, reason: str) -> str:
         if c.get("on_references") is None
         else "position, velocity, heading and rate of turn go together as on the reference voyages",
         "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
-        f"{100.0 * NAMED:.0f} % needed to name it",
+        f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
+        "true)",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
         "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
