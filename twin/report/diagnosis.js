@@ -71,8 +71,8 @@ function parameter(number) {
 function manoeuvreSection() {
   const m = RESULT.next_manoeuvre;
   if (!m) return null;
-  const apart = (m.separates || []).join(" and ");
-  return section("Sail this next", apart ? `it tells ${apart} apart` : null, el("p", { style: { margin: 0 } }, m.manoeuvre), el("p.note", null, m.why || ""));
+  const apart = (m.separates || []).join(" and "), shown = (m.shows || []).join(" and ");
+  return section("Sail this next", apart ? `it tells ${apart} apart` : shown ? `it would show ${shown}` : null, el("p", { style: { margin: 0 } }, m.manoeuvre), el("p.note", null, m.why || ""));
 }
 
 function fittedSection() {

@@ -6,7 +6,16 @@ import pytest
 from bench.boats.actuator_questions import from_sheet
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study.diagnosis.manoeuvres import MANOEUVRES, HelmOrder, inputs, next_manoeuvre, reason, sail
+from twin.study.diagnosis.manoeuvres import (
+    MANOEUVRES,
+    HelmOrder,
+    inputs,
+    next_manoeuvre,
+    reason,
+    sail,
+    showing,
+)
+from twin.study.diagnosis.tell_diagnosis import to_sail
 from twin.study.prediction.trial import shaft_speed
 
 OF_ANY_SHIP = [name for name, m in MANOEUVRES.items() if m.alone is None and m.side is None]
@@ -39,6 +48,17 @@ def test_fouling_and_a_worn_propeller_are_told_apart_by_changing_speed(case):
     assert advice["separates"] == ["HullFouling", "PropellerWear"]
     assert "speed" in advice["manoeuvre"] or "circle" in advice["manoeuvre"]
     assert "to 1" in advice["why"]
+
+
+def test_where_nothing_shows_the_manoeuvre_is_one_that_would_show_more(case):
+    """Test: a straight run, which shows nothing of the rudder. Expected: a manoeuvre that turns the ship, what it
+    would show, and no word of two effects that nobody asked about; nothing where nothing is to be shown."""
+    advice = showing(case, case.model, ["RudderWear", "RudderOffset"])
+    assert "RudderWear" in advice["shows"] and advice["separates"] == []
+    assert advice["manoeuvre"] in MANOEUVRES and "of the 2" in advice["why"]
+    said = to_sail(advice)
+    assert said.startswith("To see RudderWear") and advice["manoeuvre"] in said
+    assert showing(case, case.model, []) is None
 
 
 def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_without_another():

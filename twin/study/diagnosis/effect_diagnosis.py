@@ -20,7 +20,7 @@ from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.consider import Considered, joint_significance
 from twin.study.diagnosis.further import with_further
-from twin.study.diagnosis.manoeuvres import next_manoeuvre
+from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found
@@ -246,6 +246,10 @@ def _next(
     decision, case, found = told.decision, told.case, told.found
     if decision.verdict == "nothing_missing":
         return None
+    if decision.reason == "no_power":
+        progress("simulating manoeuvres that would show more")
+        unseen = too_small(told.seen, case.present)
+        return showing(case, case.model, [n for n in unseen if case.catalogue[n].belongs_to != "voyage"])
     rivals = next(
         (
             (c["effect"], o)

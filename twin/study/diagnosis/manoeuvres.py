@@ -1,9 +1,9 @@
 """Standard manoeuvres, sailed by the model itself, and which of them would tell two effects apart.
 
 The one to sail is the one after which the wrong effect would explain least of what the right one does
-(expected information)."""
+(expected information); where nothing shows, the one that would show most of what these voyages could not."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import Any, NamedTuple
@@ -14,6 +14,7 @@ from twin.physics.actuators.helm import ACROSS, actuator_orders
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.search import visible
 from twin.study.estimation.linear import linearise
 from twin.study.prediction.trial import shaft_speed
 from twin.study.track.track import READINGS, Track
@@ -217,21 +218,39 @@ def reason(scores: Mapping[str, float], best: str) -> str:
     return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two ({other})"
 
 
+def sailed(case: Case, model: Model) -> dict[str, Track]:
+    """The track of every manoeuvre that suits the ship and that the model can be sailed through."""
+    tracks = {name: sail(case, model, m) for name, m in MANOEUVRES.items() if m.suits(model)}
+    return {name: t for name, t in tracks.items() if np.isfinite(t.state).all()}
+
+
 def next_manoeuvre(
     case: Case, model: Model, first: str, second: str, z: np.ndarray
 ) -> dict[str, object] | None:
     """The manoeuvre that tells these two apart best, or None when none would. `z` (Q,) in prior widths."""
-    scores = {}
-    for name, manoeuvre in MANOEUVRES.items():
-        if not manoeuvre.suits(model):
-            continue
-        track = sail(case, model, manoeuvre)
-        if np.isfinite(track.state).all():
-            scores[name] = separation(case, model, track, first, second, z)
+    scores = {name: separation(case, model, t, first, second, z) for name, t in sailed(case, model).items()}
     best = max(scores, key=lambda name: scores[name], default="")
     if not best or scores[best] < 1.0:
         return None
-    return {"separates": [first, second], "manoeuvre": best, "why": reason(scores, best)}
+    return {"separates": [first, second], "shows": [], "manoeuvre": best, "why": reason(scores, best)}
+
+
+def showing(case: Case, model: Model, unseen: Sequence[str]) -> dict[str, object] | None:
+    """The manoeuvre that would show most of these effects, had they a plausible size; None when none would
+    show one."""
+    shown = {name: _shown_by(case, t, unseen) for name, t in sailed(case, model).items()}
+    best = max(shown, key=lambda name: len(shown[name]), default="")
+    if not best or not shown[best]:
+        return None
+    why = f"{MANOEUVRES[best].doc}: it would show {len(shown[best])} of the {len(unseen)}"
+    return {"separates": [], "shows": shown[best], "manoeuvre": best, "why": why}
+
+
+def _shown_by(case: Case, track: Track, names: Sequence[str]) -> list[str]:
+    here, _ = case.model.without_inputs(track.missing())
+    line = linearise(track, here, case.unknowns, case.catalogue)
+    reduced = case.reduced([line], [case.noise_model])[0]
+    return [name for name in names if visible(reduced, name)]
 
 
 def _odds(log_odds: float) -> str:

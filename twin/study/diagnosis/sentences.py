@@ -4,7 +4,7 @@ bridge."""
 from typing import Any
 
 from twin.num import num, percent
-from twin.study.diagnosis.criteria import CERTAIN, NAMED
+from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER
 
 Result = dict[str, Any]
 SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for more voyages."
@@ -136,8 +136,9 @@ def not_named(result: Result) -> str:
 def no_power(result: Result) -> str:
     """The voyages would not have shown it."""
     return (
-        "Undecided: nothing shows, but these voyages would not have shown most of what may be missing. "
-        "Sail a zigzag, and change speed."
+        f"Undecided: nothing shows, but these voyages would have shown only "
+        f"{percent(result['facts']['power'])} of the causes that may be missing, and {percent(POWER)} are "
+        "needed to say that nothing is."
     )
 
 

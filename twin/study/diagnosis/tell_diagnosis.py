@@ -31,11 +31,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     )
     lines.append(healthy_in_words(result))
     if result["next_manoeuvre"]:
-        m = result["next_manoeuvre"]
-        lines += [
-            "",
-            f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']}).",
-        ]
+        lines += ["", to_sail(result["next_manoeuvre"])]
     lines += [
         f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded."
         for n in result["not_judged"]
@@ -51,6 +47,16 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
             f"{', '.join(result['not_visible'])}."
         )
     return lines
+
+
+def to_sail(m: dict[str, Any]) -> str:
+    """The next manoeuvre, and what it is for."""
+    what = (
+        f"tell {m['separates'][0]} from {m['separates'][1]}"
+        if m["separates"]
+        else f"see {' and '.join(m['shows'])}, should they be there"
+    )
+    return f"To {what}, sail: {m['manoeuvre']} ({m['why']})."
 
 
 def weather_lines(weather: list[dict[str, Any]]) -> list[str]:
