@@ -130,12 +130,8 @@ DIAGNOSE = (
     JsonKey("p_value_sentence", "", "what that means, and how many more references would tell"),
     JsonKey("p_value_score", "-", "its score: greatest log Bayes factor of one cause to first order"),
     JsonKey("next_manoeuvre", "", "what to sail next; null where nothing is asked"),
-    JsonKey(
-        "next_manoeuvre.separates[]", "", "the two effects that it tells apart, or none", "one is proposed"
-    ),
-    JsonKey(
-        "next_manoeuvre.shows[]", "", "what it would show and these voyages not, or none", "one is proposed"
-    ),
+    JsonKey("next_manoeuvre.separates[]", "", "two effects that it tells apart", "one is proposed"),
+    JsonKey("next_manoeuvre.shows[]", "", "or effects that it would show", "one is proposed"),
     JsonKey("next_manoeuvre.manoeuvre", "", "what to sail", "one is proposed"),
     JsonKey("next_manoeuvre.why", "", "what it would show, in odds", "one is proposed"),
     JsonKey("not_judged[].effect", "", "an effect that could not be judged", "there are some"),
