@@ -16,7 +16,7 @@ from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, knowing_nothing, split
 from twin.study.calibration.stages import Stages
-from twin.study.calibration.worse import refusal
+from twin.study.calibration.worse import away_on_references, refusal
 from twin.study.reference.sailed import Sailed, sailed
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
         tell("once more, with every voyage")
         last = fitted_core(every, held, ship, tell, first.chosen.way)
     done = last.calibrated(tell, first)
-    r = done.result
+    r, why = done.result, why or away_on_references(done.ship, last.core.unexcited)
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
     said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
     return Calibration(ship if why else done.ship, data=r | said)

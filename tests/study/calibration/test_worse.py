@@ -1,7 +1,13 @@
 """A calibration that made its ship worse is not written, and says what to sail."""
 
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
 from twin.physics.ship import load
-from twin.study.calibration.worse import refusal
+from twin.study.calibration.worse import away_on_references, refusal
+from twin.study.reference.path_error import PathError
 
 USV = load("usv")
 
@@ -70,3 +76,22 @@ def test_a_ship_that_sails_straight_may_be_worse_than_keeping_speed_if_it_got_be
 
 def test_a_place_that_grew_but_is_nearer_than_keeping_speed_is_judged_with_the_heading():
     assert refusal(USV, [entry(10.0, 0.4, 0.7, 41.0, 5.0) | {"kept_m": 3.0}], []) == ""
+
+
+def with_errors(means_m):
+    """A ship whose reference voyages, each left out in turn, were so far off after 10 and 60 s."""
+    mean = np.column_stack([means_m, means_m, [0.01, 0.1]])
+    sd = np.outer(means_m, np.ones(8))
+    covariance = sd[:, :, None] * sd[:, None, :] * (0.2 * np.eye(8) + 0.8)
+    path = PathError(np.array([10.0, 60.0]), covariance, np.full(2, 0.3), 6.0, mean, 5)
+    return replace(USV, notes=dict(USV.notes) | {"structural": {"path_error": path.entry()}})
+
+
+@pytest.mark.parametrize("after_60_s, away", [(25.0, False), (5.7e4, True)])
+def test_a_model_that_runs_away_on_its_own_references_is_refused(after_60_s, away):
+    """Test: what was held back fell, and the reference voyages, each left out in turn, end 25 m or 57 km off."""
+    told = away_on_references(with_errors(np.array([2.0, after_60_s])), ["X_u"])
+    assert bool(told) == away
+    if away:
+        assert "57.0 km" in told and "after 60 s" in told and "speed changes" in told
+    assert away_on_references(USV, []) == ""

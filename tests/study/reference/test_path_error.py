@@ -167,3 +167,18 @@ def test_what_one_voyage_says_is_taken_back_when_it_is_left_out():
     whole = ship_of(told, np.zeros(1), np.zeros(1))[0]
     without = ship_of(told[:2], np.zeros(1), np.zeros(1))[0]
     assert whole == pytest.approx([-4.0 / 13.0]) and without == pytest.approx([8.0 / 9.0])
+
+
+def test_errors_of_a_model_that_ran_away_still_have_a_density(known):
+    """Test: two channels that err as one by 200 km, kept with the digits of a ship file, which leave the matrix
+    no covariance. Expected: a finite density, and no other for the usual errors."""
+    sd = np.array([1.7e5, 2.4e5, 0.5, 2.1e5, 2.1e5, 1e-4])
+    R = np.eye(6)
+    R[3, 4] = R[4, 3] = R[0, 3] = R[3, 0] = R[0, 4] = R[4, 0] = 1.0
+    S = np.full((3, 8, 8), np.nan)
+    S[:, :6, :6] = R * np.outer(sd, sd)
+    S[:, 3, 4] *= 1.0 + 1e-6
+    S[:, 4, 3] = S[:, 3, 4]
+    error = np.full((1, 8), np.nan)
+    error[0, :6] = sd
+    assert np.isfinite(replace(known, covariance=S).log_density(error, 60.0)).all()

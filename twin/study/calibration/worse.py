@@ -11,6 +11,8 @@ import numpy as np
 
 from twin.num import num
 from twin.physics.ship import Ship
+from twin.study.reference.path_error import MEANS
+from twin.study.reference.path_error import of_ship as path_error_of
 
 GREW = 0.05  # mean logarithm of the errors in place and heading over all horizons, from which they grew
 FASTEST = 3.0  # times service speed: a model that gets farther off than that ran away
@@ -44,6 +46,24 @@ def refusal(ship: Ship, held_out: Sequence[Mapping[str, Any]], unexcited: Sequen
         f"the calibrated model {what}: after {e['horizon_s']:.0f} s it is {before} off before and {after} "
         "after, on what was not used for the fit. The uncalibrated numbers are kept. Give longer reference "
         f"voyages on which nothing is wrong, with {to_sail(unexcited)}."
+    )
+
+
+def away_on_references(calibrated: Ship, unexcited: Sequence[str]) -> str:
+    """Why a ship is not written that runs away on its own reference voyages, each left out in turn, though
+    what was held back did not show it; "" when it does not. SettingsError: its file is damaged."""
+    path = path_error_of(calibrated)
+    if path is None:
+        return ""
+    reach = FASTEST * float(calibrated.U_0) * path.horizons_s
+    away = np.flatnonzero(path.mean[:, MEANS.index("position_m")] > reach)
+    if not away.size:
+        return ""
+    h = path.horizons_s[away[0]]
+    return (
+        f"the calibrated model runs away on its reference voyages, each left out in turn: after {h:.0f} s "
+        f"it is {_far(path.expected('position_m', [h])[0])} off in the mean. The uncalibrated numbers are "
+        f"kept. Give longer reference voyages on which nothing is wrong, with {to_sail(unexcited)}."
     )
 
 

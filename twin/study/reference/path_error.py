@@ -42,6 +42,7 @@ PRIOR = 4.0  # windows that the simulated noise counts for
 SCATTER = 0.4  # of the log of a healthy voyage's error about the usual one, and
 VOYAGES = 3.0  # by how many voyages this is believed before any was sailed
 TAILS = (3.0, 30.0)  # degrees of freedom
+ROUNDED = 1e-5  # of a variance: what a ship file's six digits leave open, so that a covariance stays one
 MEANS = ("position_m", "lateral_m", "heading_rad")
 
 
@@ -210,7 +211,8 @@ def _parts(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _log_t(error: np.ndarray, S: np.ndarray, nu: float) -> np.ndarray:
     """(W,) of the multivariate t density with scale S."""
-    d, L = len(S), np.linalg.cholesky(S)
+    d, sd = len(S), np.sqrt(np.diag(S))
+    L = sd[:, None] * np.linalg.cholesky(S / np.outer(sd, sd) + ROUNDED * np.eye(d))
     square = np.square(np.linalg.solve(L, error.T)).sum(0)
     norm = (
         gammaln(0.5 * (nu + d)) - gammaln(0.5 * nu) - 0.5 * d * np.log(nu * np.pi) - np.log(np.diag(L)).sum()
