@@ -4,8 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import at_least_one, several
+from twin.errors import DataError
 from twin.num import as_given, num, readable
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -128,11 +131,15 @@ def calibrate(
 
 
 def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progress) -> Calibration:
-    """The same of voyages that are read already."""
+    """The same of voyages that are read already. DataError: no numbers of the ship go with them."""
     checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
     fitted, held, words = split(every, kept)
     tell = Stages(tell, len(every) / len(fitted) if words == LAST else None)
-    first = last = fitted_core(fitted, held, ship, tell)
+    try:
+        with np.errstate(invalid="ignore"):  # the algebra says it, too
+            first = last = fitted_core(fitted, held, ship, tell)
+    except np.linalg.LinAlgError as error:
+        raise DataError(_no_fit(ship, fitted, checks)) from error
     by_horizon = zip(first.held_out, knowing_nothing(held, Model.of(ship)), strict=True)
     why = refusal(ship, [e | far for e, far in by_horizon], first.core.unexcited)
     if words == LAST and not why:
@@ -143,3 +150,12 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
     said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
     return Calibration(ship if why else done.ship, data=r | said)
+
+
+def _no_fit(ship: Ship, fitted: list[Sailed], checks: list[dict[str, Any]]) -> str:
+    """Why no model of this ship goes through these voyages, as far as the checks of the data say."""
+    doubt = next((f" {c['check']}: {c['text']}" for c in checks if c["ok"] is False), "")
+    return (
+        f"{', '.join(s.voyage.name for s in fitted)}: no numbers of {ship.name} can be fitted to "
+        f"this motion. Give voyages of this ship, in its units.{doubt}"
+    )

@@ -1,10 +1,13 @@
 """A calibration that made its ship worse is not written, and says what to sail."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import twin
+from twin.errors import DataError
 from twin.physics.ship import load
 from twin.study.calibration.worse import away_on_references, refusal
 from twin.study.reference.path_error import PathError
@@ -95,3 +98,11 @@ def test_a_model_that_runs_away_on_its_own_references_is_refused(after_60_s, awa
     if away:
         assert "57.0 km" in told and "after 60 s" in told and "speed changes" in told
     assert away_on_references(USV, []) == ""
+
+
+def test_a_voyage_of_another_ship_that_no_numbers_fit_is_refused_in_words():
+    """Test: the tanker's Monday for a boat of 2 m. Expected: which voyage, which ship, and what a check of the
+    data says of it; no error of the algebra."""
+    monday = twin.read_voyage(Path(twin.__file__).parent / "voyages" / "monday.mcap")
+    with pytest.raises(DataError, match=r"^monday: no numbers of USV, 2 m can.* propeller_rate: "):
+        twin.calibrate(USV, [monday])
