@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.study.instruments.findings import FAULT_BAYES_FACTOR
 from twin.study.instruments.instrument_samples import Readings
 
 DIFFERENCES = 3  # between samples: what a ship does itself is slow
@@ -20,7 +21,6 @@ FLAT = 2.0  # a spectrum is flat up to so many times its lower quartile
 LEAST_FLAT = 0.5  # share of the frequencies that must be so
 JUMP = 6.0  # scatters, from which a difference is no noise
 ROUGHLY = 0.2  # by how much (sd) the share may be off: headings are shown in steps, and between samples
-SURE = 5.0  # log Bayes factor, as that of any fault of an instrument
 FAR = 2.0  # standard deviations, from which a share is neither none nor all
 
 
@@ -50,7 +50,7 @@ class TurnedShare:
         voyage alone says so, whose waves may be what it saw."""
         which = float(self.log_bayes_factor > 0.0)
         far = abs(self.share - which) > FAR * np.hypot(self.sd, ROUGHLY)
-        if self.voyages < 2 or abs(self.log_bayes_factor) < SURE or far:
+        if self.voyages < 2 or abs(self.log_bayes_factor) < FAULT_BAYES_FACTOR or far:
             return ""
         return "compass" if which else "receiver"
 
