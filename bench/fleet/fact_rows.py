@@ -50,7 +50,8 @@ KEPT_FACTS = (
 
 
 def voyage(s: SailedCase) -> Voyage:
-    return Voyage(s.name, s.time_s, s.columns, {"source": "bench.fleet"})
+    how = {"velocity_frame": s.velocity_frame} if s.velocity_frame else {}
+    return Voyage(s.name, s.time_s, s.columns, {"source": "bench.fleet", **how})
 
 
 def calibrated(ship: RandomShip) -> tuple[Model, dict[str, Any]]:

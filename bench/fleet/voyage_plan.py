@@ -34,13 +34,15 @@ class FleetCase:
 
 @dataclass(frozen=True)
 class SailedCase:
-    """A voyage's columns, the weather that it had, and what was hidden, in numbers."""
+    """A voyage's columns, the weather that it had, what was hidden, in numbers, and how the velocity came, as
+    an import says it ("": it does not)."""
 
     name: str
     time_s: np.ndarray
     columns: dict[str, np.ndarray]
     weather: fleet_weather.FleetWeather
     flaws: dict[str, float]
+    velocity_frame: str = ""
 
 
 def generator(ship: RandomShip, *more: int) -> np.random.Generator:
@@ -151,4 +153,4 @@ def _sailed(
     true = {k: v[good] for k, v in true.items()}
     t, columns = instrument_recording.record(ship, true, day, seed, flaws)
     told = {k: v for k, v in vars(flaws).items() if np.any(v)}
-    return SailedCase(name, t, columns, day, told)
+    return SailedCase(name, t, columns, day, told, "course" if ship.kit.by_course else "")
