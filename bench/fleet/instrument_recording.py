@@ -48,8 +48,8 @@ def record(
     }
     slow = k.speed_late + f.late_s
     r = at("r", slow)
-    c["surge_velocity_mps"] = step(at("u", slow) - r * ay + noise(k.speed), 0.05)
-    c["sway_velocity_mps"] = step(at("v", slow) + r * ax + noise(k.speed), 0.05)
+    u, v = at("u", slow) - r * ay + noise(k.speed), at("v", slow) + r * ax + noise(k.speed)
+    c["surge_velocity_mps"], c["sway_velocity_mps"] = step(u, 0.05), step(v, 0.05)
     seen = true["psi"]
     if f.compass_s:
         a = dt / (dt + f.compass_s)
@@ -57,6 +57,14 @@ def record(
     seen = np.interp(t, true["t"], seen)
     seen = seen + k.heading_bias + f.heading + (k.deviation + f.deviation) * np.sin(seen + 0.4)
     c["heading_true_north_deg"] = step(np.degrees(seen + noise(k.heading)), 0.1) % 360
+    if k.by_course:
+        over_ground = step(np.hypot(u, v), 0.05)
+        course = np.radians(step(np.degrees(np.arctan2(v, u) + at("psi", slow)), 0.1))
+        drift = course - np.radians(c["heading_true_north_deg"])
+        c["surge_velocity_mps"], c["sway_velocity_mps"] = (
+            over_ground * np.cos(drift),
+            over_ground * np.sin(drift),
+        )
     c["yaw_rate_degps"] = step(
         np.degrees((1 + f.rate_scale) * at("r", 0.0) + k.rate_bias + f.gyro + noise(k.rate)), 0.01
     )

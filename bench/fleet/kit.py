@@ -38,9 +38,10 @@ class Kit:
     has_depth: bool
     coarse: bool  # a bridge log: whole tenths of degrees and knots
     lost: float  # share of samples
+    by_course: bool  # whether velocity came as speed and course over ground, turned by the compass
 
     @staticmethod
-    def draw(p: Particulars, rng: np.random.Generator, heels: bool) -> "Kit":
+    def draw(p: Particulars, rng: np.random.Generator, heels: bool, by_course: bool) -> "Kit":
         boat, small = p.L < 30, lambda sd: float(sd * rng.standard_normal())
         return Kit(
             every_s=float(np.clip(p.unit_s / rng.uniform(14, 26), 0.1, 2.0)),
@@ -70,4 +71,5 @@ class Kit:
             has_depth=rng.random() < 0.6,
             coarse=rng.random() < 0.35,
             lost=rng.choice([0.0, 0.0, 0.005, 0.02]) * 1.0,
+            by_course=by_course,
         )

@@ -11,6 +11,8 @@ from bench.fleet.random_particulars import draw, linear
 from bench.fleet.random_ship import RandomShip
 
 TRIES = 60
+# ships from this seed on have speed and course over ground; before, a receiver with an attitude
+BY_COURSE = 100
 
 
 def build(family: str, seed: int) -> RandomShip:
@@ -30,7 +32,7 @@ def build(family: str, seed: int) -> RandomShip:
             shape(p, a, R, rng),
             drive,
             fleet_weather.Windage(p, rng),
-            Kit.draw(p, rng, family == "heeling"),
+            Kit.draw(p, rng, family == "heeling", by_course=seed >= BY_COURSE),
             p.B * rng.uniform(0.04, 0.09),
         )
         if plausible(ship):

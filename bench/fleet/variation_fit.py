@@ -24,9 +24,10 @@ from bench.fleet.plausibility import build
 from bench.fleet.voyage_plan import VOYAGES, plan, references, sailed
 from twin.physics.effects import catalogue, of_ship
 from twin.physics.model import Model
-from twin.study.estimation.columns import NO_MODEL, Unknown, effect_unknowns
+from twin.study.estimation.columns import NO_MODEL, Unknown
 from twin.study.estimation.innovations import innovate
 from twin.study.estimation.linear import linearise
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.between import BetweenVoyages, ship_of
 from twin.study.reference.derivatives import first_prior
 from twin.study.reference.nuisance import usual_unknowns

@@ -28,9 +28,10 @@ from export.teach import Taught, teach
 from export.worth import share
 from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
-from twin.study.estimation.columns import core_unknowns, effect_unknowns
+from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.nuisance import TEMPER
 
 Predict = Callable[[Sequence[LabCourse]], list[np.ndarray]]  # (T, W, 3) for each course

@@ -109,7 +109,7 @@ def test_a_broken_effect_ends_no_diagnosis_and_no_ship_file_but_its_own(tmp_path
     code = (
         "import numpy; from twin.physics.effects import catalogue; from twin.physics.model import Model; "
         "from twin.physics.ship import load; "
-        "from twin.study.estimation.columns import effect_unknowns; m = Model.of(load('usv')); "
+        "from twin.study.estimation.of_effect import effect_unknowns; m = Model.of(load('usv')); "
         "print(sum(len(effect_unknowns(e, m)) > 0 for e in catalogue().values()))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env, cwd=ROOT)

@@ -4,7 +4,8 @@ import pytest
 
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
-from twin.study.estimation.columns import core_unknowns, effect_unknowns
+from twin.study.estimation.columns import core_unknowns
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.track.track import track
 
 

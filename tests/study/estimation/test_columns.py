@@ -5,7 +5,8 @@ import pytest
 
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
-from twin.study.estimation.columns import columns, effect_unknowns
+from twin.study.estimation.columns import columns
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.track.track import track
 
 

@@ -7,9 +7,10 @@ import pytest
 
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
-from twin.study.estimation.columns import core_unknowns, effect_unknowns
+from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
 from twin.study.estimation.linear import linearise
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import READINGS, track

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.estimation.columns import core_unknowns, effect_unknowns, with_values
+from twin.study.estimation.columns import core_unknowns, with_values
 from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import linearise
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.estimation.respond import later
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.smooth_motion import smooth_motion

@@ -48,8 +48,8 @@ def smoothed(columns, time_s):
     return columns | {U: out.real, V: out.imag}
 
 
-def asked(*columns):
-    return on_references([of_voyage(voyage(c, "course")) for c in columns], 100.0)
+def asked(*columns, frames=("course", "course", "course")):
+    return on_references([of_voyage(voyage(*v)) for v in zip(columns, frames, strict=False)], 100.0)
 
 
 def sailed(columns):
@@ -146,3 +146,23 @@ def test_counted_from_the_other_instrument_an_age_is_what_the_first_was_earlier_
     assert [v.value for v in after.numbers["heading_delay"].voyages] == [-0.2, -0.4]
     assert after.numbers["A"] == usual and before.counted_from("heading_delay") is before
     assert before.counted_from("gnss_delay") is before  # of it the references told nothing
+
+
+@pytest.mark.parametrize(
+    ("frames", "velocity_by"),
+    [(("course",) * 3, "compass"), (("body",) * 3, "receiver"), (("course", "body", "course"), "")],
+)
+def test_the_record_says_what_turned_the_velocity_where_all_references_agree(days, frames, velocity_by):
+    record = asked(*days, frames=frames).record
+    assert record.velocity_by == velocity_by
+    assert KinematicRecord.of_notes({"instruments": record.entry()}) == record
+
+
+def test_a_record_from_before_says_nothing_of_it(days):
+    entry = asked(*days).record.entry()
+    assert (
+        KinematicRecord.of_notes(
+            {"instruments": {k: v for k, v in entry.items() if k != "velocity_by"}}
+        ).velocity_by
+        == ""
+    )

@@ -14,7 +14,7 @@ from twin.physics.model import Model
 from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
 from twin.study.diagnosis.assemble import judgeable
-from twin.study.estimation.columns import effect_unknowns
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.nuisance import HEALTHY_WIDTHS, from_ship, nuisance_unknowns, of_known_weather
 from twin.study.track.track import track
 

@@ -13,10 +13,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.physics.effects import of_role
-from twin.study.estimation.columns import Unknown, effect_unknowns
+from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import Catalogue, Fit
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import linearise
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.between import BetweenVoyages, voyages
 from twin.study.reference.steering_gear import GEAR_LOG_BAYES as CLEARLY
 from twin.study.reference.steering_gear import about

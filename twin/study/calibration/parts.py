@@ -13,9 +13,9 @@ from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.calibration.held_out import HeldOut, errors, size
-from twin.study.estimation.columns import effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, fit
 from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.steering_gear import GEAR_LOG_BAYES as CLEARLY_BETTER
 from twin.study.reference.weather_baseline import strengths
 from twin.study.track.track import Track

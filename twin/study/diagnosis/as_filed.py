@@ -15,9 +15,10 @@ def model_with(case: Case, names: Sequence[str], z: np.ndarray) -> Model:
     model = case.model
     for name in names:
         own = {
-            u.name: in_file(u.centre + u.sd * float(x), u.lo, u.hi)
+            number: value
             for u, x in zip(case.effects, z, strict=True)
             if u.owner == name and u.acts_on(case.tracks[0])
+            for number, value in u.of_effect(in_file(u.centre + u.sd * float(x), u.lo, u.hi)).items()
         }
         present = next((e for e in model.effects if type(e).__name__ == name), None) or case.catalogue[
             name

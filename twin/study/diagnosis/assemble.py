@@ -19,12 +19,12 @@ from twin.study.estimation.columns import (
     SEA,
     Unknown,
     core_unknowns,
-    effect_unknowns,
     lateness_unknowns,
     rough_unknowns,
 )
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.evidence import Nuisance
 from twin.study.reference.nuisance import (
     TEMPER,

@@ -36,6 +36,7 @@ class Unknown:
     also: tuple[str, ...] = ()
     varies: float = 0.0  # standard deviation between healthy voyages of one ship, in `sd`
     age: bool = False  # whether it is the age of a reading, which differs from voyage to voyage
+    turning: str = ""  # of a compass or receiver: the number of its effect that is the same (of_effect.py)
     voyage: str | None = None  # the track's name of the only voyage on which it acts; None: on all
 
     @property
@@ -51,6 +52,10 @@ class Unknown:
     def acts_on(self, track: Track) -> bool:
         """Whether it does anything on this voyage."""
         return self.voyage in (None, track.name)
+
+    def of_effect(self, value: float) -> dict[str, float]:
+        """The numbers of its effect at this value of it."""
+        return dict.fromkeys((self.name, self.turning) if self.turning else (self.name,), value)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -137,30 +142,6 @@ def _of_actuators(ship: Ship) -> dict[tuple[str, float, object], list[str]]:
             out.setdefault((name, float(getattr(a, name)), whose), []).append(a.name)
     alone = {owners[0] for (name, *_), owners in out.items() if name == "gain" and len(owners) == 1}
     return {key: owners for key, owners in out.items() if key[0] != "own_gain" or key[2] not in alone}
-
-
-def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
-    """The parameters of one effect on this ship, centred on what the model holds of it: on "not there" where
-    it does not."""
-    present = next((e for e in model.effects if type(e) is effect), None) or effect.absent(model.ship)
-    out = []
-    for p in effect.params():
-        k, (lo, hi) = p.scale(model.ship), p.box(model.ship)
-        out.append(
-            Unknown(
-                effect.__name__,
-                p.name,
-                p.unit,
-                float(getattr(present, p.name)),
-                p.sd * k,
-                lo,
-                hi,
-                p.name in effect.every_day,
-                varies=effect.varies,
-                age=p.name in effect.ages,
-            )
-        )
-    return out
 
 
 def columns(
@@ -286,7 +267,7 @@ def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, t
     of = {type(e).__name__: e for e in model.effects}
     owners = (unknown.owner, *unknown.also)
     effects = (of.get(name) or catalogue[name].absent(model.ship) for name in owners)
-    return model.but(*(e.but(**{unknown.name: value}) for e in effects))
+    return model.but(*(e.but(**unknown.of_effect(value)) for e in effects))
 
 
 def with_values(

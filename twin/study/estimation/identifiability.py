@@ -18,8 +18,9 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
-from twin.study.estimation.columns import columns, core_unknowns, effect_unknowns
+from twin.study.estimation.columns import columns, core_unknowns
 from twin.study.estimation.observability import LENGTHS, UNKNOWNS, observability
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.track.track import Track, track
 
 ROWS = 1500  # of the voyage used for the angles

@@ -65,6 +65,7 @@ class Instruments:
     instead: dict[str, tuple[str, ...]]
     stream: tuple[dict[str, np.ndarray], ...]
     clock: str  # the age that is none by definition
+    velocity_by: str  # what surely turned velocity over ground: "compass" or "receiver"; "": not known
     fit: KinematicFit
 
     def of(self, name: str) -> InstrumentEstimate | None:
@@ -73,7 +74,11 @@ class Instruments:
 
 
 def said(
-    readings: Sequence[Readings], problems: Sequence[Problem], found: KinematicFit, clock: str
+    readings: Sequence[Readings],
+    problems: Sequence[Problem],
+    found: KinematicFit,
+    clock: str,
+    velocity_by: str,
 ) -> Instruments:
     """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
     for each voyage, in the order of the fit; `clock`: the age that is none by definition. A fault of the
@@ -105,6 +110,7 @@ def said(
         {f: instead.get(f, ()) for f in faults},
         tuple(_stream(p, t) for p, t in zip(problems, found.theta, strict=True)),
         clock,
+        velocity_by,
         found,
     )
 

@@ -13,11 +13,13 @@ from twin.study.instruments.kinematic_fit import KinematicFit, columns, fit
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.select import Weighed, WeighedSets
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, effect_of
+from twin.study.instruments.velocity_turned import turned_share
 from twin.study.track.track import Track
 
 __all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
 ROUNDS = 4  # selections, each about a new fit
 OWN_TURN_LOG_BAYES = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
+BY_OWN = {False: "compass", True: "receiver"}  # whether the receiver turned it itself -> what did
 Progress = Callable[[str], None]
 # by the length of the ship [m]; a calibration asks the same voyages twice
 KNOWN_TURNS: WeakKeyDictionary[Readings, dict[float, float]] = WeakKeyDictionary()
@@ -36,7 +38,7 @@ def estimate(
     its velocity by an attitude of its own, if known; else what all voyages say together."""
     readings = [_readings(v) for v in voyages]
     lengths = [length_m or r.length for r in readings]
-    problems = _problems(readings, lengths, own, progress)
+    problems, velocity_by = _problems(readings, lengths, own, progress)
     progress("fitting all numbers at once")
     found, clock = _whole(problems, clock)
     chosen: tuple[str, ...] | None = None
@@ -50,7 +52,7 @@ def estimate(
         found = fit(
             problems, [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)], _start(found, best)
         )
-    return said(readings, problems, found, clock)
+    return said(readings, problems, found, clock, velocity_by)
 
 
 def _readings(v: Voyage | Track | Readings) -> Readings:
@@ -59,18 +61,22 @@ def _readings(v: Voyage | Track | Readings) -> Readings:
 
 def _problems(
     readings: Sequence[Readings], lengths: Sequence[float], own: bool | None, progress: Progress
-) -> list[Problem]:
-    """The voyages, with their velocity turned by the ship's compass or by the receiver itself. Where the
-    samples do not show which (`Readings.own`), it is the same on all: one receiver, wired once."""
-    of_each = list(zip(readings, lengths, strict=True))
-    untold = [r.own is None and "velocity" in r.by for r in readings]
-    if own is None and any(untold):
-        by = (_itself(r, length, progress) for (r, length), ask in zip(of_each, untold, strict=True) if ask)
-        own = sum(by) > OWN_TURN_LOG_BAYES
-    return [
-        Problem(r, length, bool(own if ask else r.own))
-        for (r, length), ask in zip(of_each, untold, strict=True)
+) -> tuple[list[Problem], str]:
+    """The voyages, with their velocity turned by the ship's compass or by the receiver itself, and which it
+    surely was on all of them ("": that cannot be told). Where nobody says (`Readings.own`), their noise does,
+    and where that is silent how they go together: one receiver, wired once."""
+    untold = [(r, n) for r, n in zip(readings, lengths, strict=True) if r.own is None and "velocity" in r.by]
+    share = turned_share([r for r, _ in untold])
+    if own is None and share.tells:
+        own = share.share < 0.5
+    elif own is None and untold:
+        own = sum(_itself(r, length, progress) for r, length in untold) > OWN_TURN_LOG_BAYES
+    sure = {BY_OWN[r.own] if r.own is not None else share.by for r in readings if "velocity" in r.by}
+    problems = [
+        Problem(r, length, bool(own if r.own is None else r.own))
+        for r, length in zip(readings, lengths, strict=True)
     ]
+    return problems, sure.pop() if len(sure) == 1 else ""
 
 
 def _itself(r: Readings, length: float, progress: Progress) -> float:

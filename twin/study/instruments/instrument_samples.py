@@ -10,7 +10,6 @@ from twin.errors import DataError
 from twin.recording.voyage import Voyage
 from twin.study.track.track import READINGS, Track
 
-SMALLER_SCATTER = 0.9  # a scatter that is smaller than another by this factor is the smaller one
 LEAST_INSTRUMENT_SAMPLES = 30  # samples of an instrument that can tell anything
 OWN = {"body": True, "course": False, "earth": False}  # by the frame in which the velocity was recorded
 PER_MOTION = 20  # samples kept in the time in which the ship's turning changes; more say nothing more of it
@@ -39,7 +38,7 @@ class ReadingSamples:
 class Readings:
     """One voyage; equal only to itself. `by`: place (N, E), velocity (north, east, or ahead and to starboard
     where `own`), heading, rate, log, wind (from, in the ship's axes), roll. `own`: whether the receiver
-    turned its velocity by an attitude of its own; None: the samples do not tell."""
+    turned its velocity by an attitude of its own; None: nobody said."""
 
     name: str
     by: Mapping[str, ReadingSamples]
@@ -128,8 +127,6 @@ def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool |
         )
     time = _time(by["heading"])
     body = by.pop("body", None)
-    if own is None and body is not None:
-        own = _own(body)
     speed = _speed(by)
     if "air" in by:
         air = by.pop("air")
@@ -168,18 +165,6 @@ def _time(heading: ReadingSamples) -> float:
 def _scatter(y: np.ndarray) -> float:
     """White scatter, from third differences."""
     return 1.4826 * float(np.median(np.abs(np.diff(y, 3)))) / np.sqrt(20.0) if y.size > 3 else 0.0
-
-
-def _own(body: ReadingSamples) -> bool | None:
-    """Whether the velocity scatters less in the ship's axes than by the earth: the compass that turned it is
-    not this one."""
-    u, v, psi = body.y.T
-    c, s = np.cos(psi), np.sin(psi)
-    ship, earth = (
-        np.hypot(_scatter(u), _scatter(v)),
-        np.hypot(_scatter(u * c - v * s), _scatter(u * s + v * c)),
-    )
-    return True if ship < SMALLER_SCATTER * earth else False if earth < SMALLER_SCATTER * ship else None
 
 
 def _speed(by: Mapping[str, ReadingSamples]) -> float:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.study.estimation.of_effect import NOTE
 from twin.study.estimation.rarity import deviations
 from twin.study.instruments.by_voyage import equations, tellable
 from twin.study.instruments.findings import CLOCKS, Instruments
@@ -19,8 +20,6 @@ from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS
 from twin.study.reference.between import scattered, ship_of
-
-NOTE = "instruments"  # its place in the ship file
 
 
 @dataclass(frozen=True)
@@ -72,12 +71,13 @@ class KinematicUsual:
 class KinematicRecord:
     """What the ship file keeps. `clock`: the age from which the others count; `faults`: those that the
     references ask for, open beside every other; `own`: whether the receiver turned its velocity itself on all
-    of them."""
+    of them; `velocity_by`: what surely turned it, "compass" or "receiver", "" where that cannot be known."""
 
     clock: str
     faults: tuple[str, ...]
     own: bool
     numbers: Mapping[str, KinematicUsual]
+    velocity_by: str = ""
 
     def entry(self) -> dict[str, Any]:
         """As the ship file has it."""
@@ -102,7 +102,13 @@ class KinematicRecord:
             for name, n in told["numbers"].items()
             if name in INDEX
         }
-        return KinematicRecord(str(told["clock"]), tellable(told["faults"]), bool(told["own"]), numbers)
+        return KinematicRecord(
+            str(told["clock"]),
+            tellable(told["faults"]),
+            bool(told["own"]),
+            numbers,
+            str(told.get("velocity_by", "")),
+        )
 
 
 @dataclass(frozen=True)
@@ -127,7 +133,7 @@ def on_references(readings: Sequence[Readings], length_m: float) -> OnReferences
         usual, far = _of_set(found, readings, chosen, mine)
         numbers |= usual
         clear |= {f: d for f, d in far.items() if f in found.faults and not found.instead[f]}
-    record = KinematicRecord(found.clock, found.faults, all(found.own), numbers)
+    record = KinematicRecord(found.clock, found.faults, all(found.own), numbers, found.velocity_by)
     return OnReferences(record, clear, found)
 
 

@@ -22,15 +22,9 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.columns import (
-    FORM,
-    ROUGH,
-    SEA,
-    effect_unknowns,
-    lateness_unknowns,
-    rough_unknowns,
-)
+from twin.study.estimation.columns import FORM, ROUGH, SEA, lateness_unknowns, rough_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.evidence import Reduced, reduce, weigh_sets
 from twin.study.reference.nuisance import Known, lasting, of_known_weather
 from twin.study.reference.reading import MOST_SEGMENTS, read_lines

@@ -12,13 +12,13 @@ from twin.study.estimation.columns import (
     FORM,
     Unknown,
     core_unknowns,
-    effect_unknowns,
     form_unknowns,
     lateness_unknowns,
     sea_unknowns,
 )
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.between import BetweenVoyages, doubted, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 

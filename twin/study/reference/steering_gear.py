@@ -18,10 +18,11 @@ from twin.physics.effect import Effect, Lag
 from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship_like import ShipLike
-from twin.study.estimation.columns import Unknown, effect_unknowns, with_values
+from twin.study.estimation.columns import Unknown, with_values
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
 from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
 from twin.study.estimation.linear import Linear, linearise
+from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.track.track import Track
 
 # of the plausible gear's; the first is as fast as a large tanker's must be
