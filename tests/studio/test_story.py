@@ -38,6 +38,9 @@ def test_data_compare_diagnose_add_compare_with_the_numbers_of_the_command_line(
     assert page.value(
         "[...document.querySelectorAll('figcaption')].some((f) => f.innerText.includes('with HullFouling'))"
     )
+    assert found["p_value_sentence"] in shown(page) and not page.value(
+        "!!document.getElementById('sail-next')"
+    )
     page.value("document.getElementById('to-add').click()")
     page.wait("document.getElementById('effect-0')?.checked === true", 30)
     press(page, "Add and prove")
@@ -106,6 +109,28 @@ def test_a_killed_worker_is_said_and_the_work_can_be_done_again_through_a_reload
     ]
     assert asked[0] == asked[1] and answer(project, again)["files"]["voyages"] == asked[1]["voyages"]
     assert answer(project, again)["missing"] == ["HullFouling"]
+
+
+def test_what_to_sail_next_stands_beside_a_verdict_that_is_open(page, project):
+    """Test: the answer about Monday, had two causes looked alike. Expected: the manoeuvre that parts them."""
+    name = page.value("twinStudio.state.jobs.find((j) => j.verb === 'diagnose').name")
+    kept = project.folder / "jobs" / name / "result.json"
+    whole = kept.read_text()
+    sail = {
+        "separates": ["HullFouling", "PropellerWear"],
+        "shows": [],
+        "manoeuvre": "square",
+        "why": "odds 90 to 1",
+    }
+    kept.write_text(json.dumps(json.loads(whole) | {"next_manoeuvre": sail}))
+    page.value("location.reload()")
+    time.sleep(0.3)
+    page.wait("window.twinStudio?.drawn > 0", 30)
+    go(page, f"#/diagnose/{name}")
+    page.wait("!!document.getElementById('sail-next')", 30)
+    said = page.value("document.getElementById('sail-next').innerText")
+    assert said == "To tell HullFouling from PropellerWear, sail: square (odds 90 to 1)."
+    kept.write_text(whole)
 
 
 def test_an_owners_bad_table_is_mended_by_the_button_and_imported(page, project, spoiled):

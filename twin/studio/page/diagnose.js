@@ -32,11 +32,19 @@ function answer(a, r) {
   const with_ = a.view.causes.find((c) => c.effect === chosen && c.lines), k = voyages.indexOf(v);
   const extra = { name: () => "model without it", look: () => "c-second", lines: (channel) => (with_ && READING[channel] in with_.lines[k] ? [{ name: `with ${with_.effect}`, y: unpack(with_.lines[k][READING[channel]]), look: "c-model" }] : []) };
   return [el("section.card", { "aria-label": "Verdict" }, el(".head", null, el(`span.badge.${look}`, null, words), el("span.note", null, `rule: ${d.reason}`)), el("p.big", null, d.sentence), next(a),
-      el("p.note", null, `Nothing missing: ${num(100 * d.probabilities.nothing_missing, 2)} %. Something without a name: ${num(100 * d.probabilities.unknown, 2)} %.`)),
+      el("p.note", null, `Nothing missing: ${num(100 * d.probabilities.nothing_missing, 2)} %. Something without a name: ${num(100 * d.probabilities.unknown, 2)} %.`),
+      d.p_value_sentence ? el("p.note", null, d.p_value_sentence) : null, sail(d.next_manoeuvre)),
     card("Causes, likeliest first", d.candidates.length ? d.candidates.map((c) => cause(c, a, chosen)) : el("p", null, "No cause is likely."), d.resembles.length ? [el("h3", null, "Known by their form alone: what it looks like"), d.resembles.map((c) => cause(c, a, chosen))] : null),
     el(".two", null, rivals(d), card("Water and wind of these voyages", el("p.note", null, "They belong to the day, not to the ship."), d.weather.length ? d.weather.map((c) => cause(c, a, chosen)) : el("p", null, "Nothing of the water or the weather had to be taken into account."))),
     el("section.card", { "aria-label": "When" }, el("h2", null, `When: ${v.name}`), voyages.length > 1 ? field("voyage", choose("voyage", voyages.map((x) => [x.name, x.name]), v.name, (x) => change({ voyage: x }))) : null, heatOf(v, view)),
     seriesCard([a], v, view, extra), forcesCard(a, v.name, view, r), more(d), foot(a.job)];
+}
+
+/** What to sail next, and what it is for. */
+function sail(m) {
+  if (!m) return null;
+  const apart = (m.separates || []).join(" from "), shown = (m.shows || []).join(" and ");
+  return el("p", { id: "sail-next" }, apart ? `To tell ${apart}, sail: ` : `To see ${shown}, should they be there, sail: `, el("b", null, m.manoeuvre), ` (${m.why}).`);
 }
 
 const bar = (p, words) => el("span.chance", null, svg("svg", { viewBox: "0 0 100 7", preserveAspectRatio: "none", role: "img", "aria-label": words }, svg("rect", { class: "c-model fill", width: 100 * p, height: 7 })));
