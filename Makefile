@@ -5,6 +5,9 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 
+# the tests start hundreds of commands: none needs to compile what another has compiled
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test lint types tests paper bench clean help
 
 help:  ## these words

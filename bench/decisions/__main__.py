@@ -19,6 +19,7 @@ from bench.decisions.question import KnownCase
 from bench.decisions.questions import known_cases
 from twin import whole
 from twin.study.diagnosis import effect_diagnosis
+from twin.study.diagnosis.answer import SearchAnswer
 from twin.study.diagnosis.consider import consider
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.verdict import weights
@@ -55,22 +56,22 @@ def kept_answer(folder: Path, question: KnownCase, tag: str, again: bool) -> dic
     if path.exists() and not again:
         return json.loads(path.read_text())
     store = folder / "searched" / tag / _file(question, "pickle")
-    search = effect_diagnosis.search
+    first_answer = effect_diagnosis.answer
     wall, cpu = time.perf_counter(), time.process_time()
     ship, voyages = question.get()
     ready, work = time.perf_counter(), time.process_time()
 
-    def keeping(case: Any, progress: Any = None) -> Any:
-        out = search(case)
+    def keeping(*asked: Any) -> SearchAnswer:
+        out = first_answer(*asked)
         store.parent.mkdir(parents=True, exist_ok=True)
-        store.write_bytes(pickle.dumps((case, out)))
+        store.write_bytes(pickle.dumps((out.case, (out.weighed, out.found, out.seen))))
         return out
 
-    effect_diagnosis.search = keeping
+    effect_diagnosis.answer = keeping
     try:
         answer = effect_diagnosis.diagnose(voyages, ship).result
     finally:
-        effect_diagnosis.search = search
+        effect_diagnosis.answer = first_answer
     path.parent.mkdir(parents=True, exist_ok=True)
     answer |= {
         "truth": question.truth,

@@ -58,9 +58,9 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
     it. Expected: a tenth of where it would end without it belongs to what is expected, with what a wind that pushes
     a twentieth of its length farther ahead or aft would do; and nothing."""
     windy = tanker.with_effects(find("Wind").plausible(tanker))
-    lasting_ones = replace(
-        windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}}
-    )
+    stored = windy.notes["structural"]
+    beside = {"beside_effects": [*stored["beside_effects"], "Wind"]}
+    lasting_ones = replace(windy, notes={**windy.notes, "structural": stored | beside})
     case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, lasting_ones))
     (without, share), *others = added(case.model)
     assert share == KNOWN and not others and added(known.model) == []
@@ -190,7 +190,8 @@ def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(case
         of_the_day = replace(case, nuisance=replace(case.nuisance, daily=daily))
         told = posterior(of_the_day.reduced(case.lines, case.scenarios(["usual"]))[0], ())
         off.append(held_out_error(of_the_day, Found(says(), told, case.model)))
-    assert off[0] > off[1] > off[2] and off[2] == pytest.approx(held_out_error(case, named), rel=0.3)
+    assert off[0] > off[1] > off[2]
+    assert off[2] - held_out_error(case, named) < 0.05 * off[0]
 
 
 def test_the_best_come_first():
@@ -230,8 +231,9 @@ def test_the_expected_error_is_no_lower_than_what_the_calibration_measured_on_ot
 ):
     case = case_of("nothing")
     ahead = horizon_s(case.tracks[0], case.model)
+    stored = {k: v for k, v in tanker.notes["structural"].items() if k != "path_error"}
     for held_out, measured in (([], 0.0), ([{"horizon_s": ahead, "position_m": 500.0}], 500.0)):
-        notes = tanker.notes | {"structural": tanker.notes["structural"] | {"held_out": held_out}}
+        notes = tanker.notes | {"structural": stored | {"held_out": held_out}}
         ship = replace(case.model.ship, notes=notes)
         asked_of = replace(case, model=replace(case.model, ship=ship))
         assert measured_error_m(asked_of) == pytest.approx(measured)

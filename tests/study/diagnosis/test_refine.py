@@ -111,7 +111,7 @@ def test_a_set_whose_climb_went_astray_stands_no_lower_than_its_part(case, monke
     monkeypatch.setattr("twin.study.diagnosis.refine.NEWTON", 1)
     alone = part.hypothesis.log_evidence + case.log_prior(both, "usual")
     astray, again = (best_place(case, both, "usual", guess, hoped, part) for hoped in (-np.inf, np.inf))
-    assert astray.best.log_weight < alone - 20.0 < alone - 10.0 < again.best.log_weight
+    assert astray.best.log_weight < alone - 50.0 < alone - 15.0 < again.best.log_weight
 
 
 def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch):
@@ -123,7 +123,7 @@ def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch
     monkeypatch.setattr(BestPlace, "of", classmethod(lambda cls, *_: asked.append(1) or top))
     higher = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=1e9)}
     assert replace(top, judged=higher).or_from(case, ("RudderWear",), mine, z).judged is higher and not asked
-    lower = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=-1e9)}
+    lower = {name: replace(h, log_evidence=-1e9) for name, h in top.judged.items()}
     assert replace(top, judged=lower).or_from(case, ("RudderWear",), mine, z) is top and asked
 
 
@@ -169,7 +169,7 @@ def test_an_antenna_that_the_ship_file_knows_is_taken_out_of_the_motion_once(tan
     """Expected: about nothing, what the readings are off by is what it was: not the antenna's place once
     more."""
     antenna = find("AntennaOffset").absent(tanker).but(ahead=0.1 * tanker.L_pp)
-    case = assemble([voyages["SteeringLag"]], tanker.with_effects(*tanker.effects, antenna))
+    case = assemble([voyages["SteeringLag"]], replace(tanker, effects=(antenna,)))
     mine = rows(case, "SensorDelay")
     for before, after in zip(
         case.lines,

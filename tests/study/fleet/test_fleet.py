@@ -130,7 +130,7 @@ def test_a_result_is_a_table_a_line_and_a_page(asked):
     assert set(result.to_dataframe()["ship"]) == set(result.ships) == {"Alma", "Berta"}
     assert len(repr(result)) < 300 and "2 ships" in repr(result)
     assert result._repr_html_().startswith("<iframe srcdoc=")
-    assert "not judged:" in result.text() and any("not controlled" in line for line in result.text())
+    assert "not judged:" in result.text() and any("6 reference voyages" in line for line in result.text())
 
 
 def test_another_run_asks_what_is_not_there_and_what_changed(asked, yard):
