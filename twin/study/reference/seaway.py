@@ -21,6 +21,7 @@ from twin.study.estimation.innovations import NoiseModel, innovate_each
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
+from twin.study.reference.encounter import met, one_frequency
 from twin.study.reference.nuisance import TEMPER, nuisance_unknowns
 from twin.study.reference.steering_gear import geared
 from twin.study.reference.structure import noise_model_of
@@ -67,15 +68,17 @@ def swung(track: Track, model: Model) -> Track:
 
 
 def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
-    """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
-    of no waves."""
+    """The track in waves as fast and as strong as the readings ask for, if anything swings it; log evidence
+    of that, and of no waves. One frequency of many must be proved even where a sea was measured: its height
+    does not say how often it is met."""
     noise_model, rough = noise_model_of(model.ship) or NoiseModel(), _swinging(track, model)
-    if rough.swell is None:
+    if not rough:
         return track, -np.inf, 0.0
     parts = [
-        read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough))
+        read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0]
+        for t in (track, *(levelled(t) for t in rough))
     ]
-    lines, sd = (
+    (calm, *lines), sd = (
         [linearise(p, model, unknowns, of_ship(model.ship)) for p in parts],
         np.array([u.sd for u in unknowns]),
     )
@@ -84,9 +87,13 @@ def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> 
         each = innovate_each([[line] for line in lines], [noise_model.scaled(white=k) for k in WHITES])
         return [max(evidence(n, sd) for n in normals) for normals in each]
 
-    as_strong = likely(*(replace(lines[1], track=_times(lines[1].track, k)) for k in STRENGTHS))
+    tried = [(n, k) for n in range(len(rough)) for k in STRENGTHS]
+    as_strong = likely(*(replace(lines[n], track=_times(lines[n].track, k)) for n, k in tried))
+    proof = TEMPER * WAVES_LOG_BAYES if at_sea(track, model) else 0.0
+    as_strong = [x - proof * one_frequency(rough[n]) for x, (n, _) in zip(as_strong, tried, strict=True)]
     best = int(np.argmax(as_strong))
-    return _times(rough, BEYOND * STRENGTHS[best]), as_strong[best], likely(lines[0])[0]
+    which, strength = tried[best]
+    return _times(rough[which], BEYOND * strength), as_strong[best], likely(calm)[0]
 
 
 def _times(track: Track, strength: float) -> Track:
@@ -94,25 +101,33 @@ def _times(track: Track, strength: float) -> Track:
     return track if track.swell is None else replace(track, swell=track.swell * np.repeat([1.0, strength], 3))
 
 
-def _swinging(track: Track, model: Model) -> Track:
-    """The track with what waves may do to it, or the same track where nothing swings it or there is too
+def _swinging(track: Track, model: Model) -> list[Track]:
+    """The track with what waves may do to it: as the smooth path shows them from moment to moment, and at
+    one frequency as the readings of yaw do (encounter.py). None where nothing swings it or there is too
     little of it."""
     time = float(model.ship.scale("time"))
     if not segments([track], time):
-        return track
+        return []
+    shown = [*_along(track, model, time), *met(track, SWIFT * time, LATELY * time)]
+    return [replace(track, swell=swell) for swell in shown]
+
+
+def _along(track: Track, model: Model, time: float) -> list[np.ndarray]:
+    """(N, 6) what swings it along the smooth path, if enough of what the model leaves over is swift; `time`
+    L/U_0 [s]."""
     left = _left_over(track, model)
     left -= left.mean(0)
     swift = left - _lately(left, SWIFT * time / track.h)
     share = swift[:, 1:].var(0) / np.maximum(left[:, 1:].var(0), 1e-30)
     if not at_sea(track, model) and share.max() < WAVE_SHARE:
-        return track
+        return []
     size, change = (
         _lately(x**2, LATELY * time / track.h) for x in (swift, np.gradient(swift, track.h, axis=0))
     )
     omega = np.sqrt(change / np.maximum(size, 1e-30)).clip(
         2.0 * np.pi / (SWIFT * time), 0.5 * np.pi / track.h
     )
-    return replace(track, swell=np.column_stack([omega, np.sqrt(size)]))
+    return [np.column_stack([omega, np.sqrt(size)])]
 
 
 def levelled(track: Track) -> Track:
