@@ -23,7 +23,7 @@ Source: Fossen (2021) Handbook of Marine Craft, ch. 6: D(nu_r) > 0 and M_A = M_A
 Hydrodynamics of High-Speed Marine Vehicles.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from typing import NamedTuple
 
@@ -57,9 +57,29 @@ class HalfSpaces(NamedTuple):
 def half_spaces(ship: Ship, unknowns: Sequence[Unknown]) -> HalfSpaces:
     """What the unknowns of a ship's core may not leave; none when none of them is of its damping or its added
     mass."""
+    both = where_it_dissipates(ship, unknowns), where_resistance_grows(ship, unknowns)
+    return HalfSpaces(*map(np.concatenate, zip(*both, strict=True)))
+
+
+def where_it_dissipates(ship: Ship, unknowns: Sequence[Unknown]) -> HalfSpaces:
+    """Of P and E alone."""
+    return _of(ship, unknowns, ((OF_DAMPING, _damped), (OF_WATER, _energy)))
+
+
+def where_resistance_grows(ship: Ship, unknowns: Sequence[Unknown]) -> HalfSpaces:
+    """Of dR/du alone."""
+    return _of(ship, unknowns, ((OF_RESISTANCE, _growing),))
+
+
+def _of(
+    ship: Ship,
+    unknowns: Sequence[Unknown],
+    measures: Sequence[tuple[Sequence[str], Callable[[Ship], np.ndarray]]],
+) -> HalfSpaces:
+    """Those in which each measure keeps its share, by the derivatives that it depends on."""
     first = ship.with_derivatives(**{u.name: u.centre for u in unknowns if u.owner == "core"})
     rows, at_first = [], []
-    for names, measure in ((OF_DAMPING, _damped), (OF_RESISTANCE, _growing), (OF_WATER, _energy)):
+    for names, measure in measures:
         column = [j for j, u in enumerate(unknowns) if u.owner == "core" and u.name in names]
         if not column:
             continue
