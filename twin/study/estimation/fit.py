@@ -12,9 +12,14 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.box import within
+from twin.study.estimation.box import INSIDE, within
 from twin.study.estimation.columns import LATE, Unknown, with_values
-from twin.study.estimation.dissipation import HalfSpaces, half_spaces
+from twin.study.estimation.dissipation import (
+    HalfSpaces,
+    half_spaces,
+    where_it_dissipates,
+    where_resistance_grows,
+)
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.track.track import Track
@@ -70,17 +75,17 @@ def fit(
     takes energy out of every motion (dissipation.py), and no further than they were found to hold: a step
     that kept its promise lets the next one go twice as far, one that did not is not taken but made shorter
     (trust region; Nocedal & Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does
-    not end in a corner of their boxes; the last one is not judged.
+    not end in a corner of their boxes; the last one is not judged. Only a fit that ends where
+    resistance falls with speed is begun again, at the nearest place where it grows: a wall on the way led it
+    elsewhere.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
         filter follows is not found yet,
     and errs by more than they do."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, noise_model, temper, smooth)
-    here, far = problem.at(problem.start()), NEAR
-    for _ in range(STEPS):
-        z, far = problem.better(here, far)
-        if here.as_good_as(z):
-            break
-        here = problem.at(z)
+    here, z = replace(problem, grows=False).best(problem.start())
+    if not problem.resistance_grows(z):
+        del here  # its columns are large
+        here, z = problem.best(problem.nearest(z))
     covariance = here.covariance * np.outer(problem.sd, problem.sd)
     return Fit(
         problem.with_values(z),
@@ -137,6 +142,7 @@ class _Problem:
     noise_model: NoiseModel
     temper: float
     smooth: bool
+    grows: bool = True  # whether resistance must grow with speed
 
     @cached_property
     def centre(self) -> np.ndarray:
@@ -156,11 +162,31 @@ class _Problem:
     @cached_property
     def hull(self) -> HalfSpaces:
         """Where the damping takes energy out of every motion."""
-        return half_spaces(self.model.ship, self.unknowns)
+        held = half_spaces if self.grows else where_it_dissipates
+        return held(self.model.ship, self.unknowns)
 
     def start(self) -> np.ndarray:
         here = (np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd
-        return within(here, np.eye(here.size), self.box, self.hull)
+        return self.nearest(here)
+
+    def nearest(self, z: np.ndarray) -> np.ndarray:
+        """The nearest place inside, in widths of priors."""
+        return within(z, np.eye(z.size), self.box, self.hull)
+
+    def resistance_grows(self, z: np.ndarray) -> bool:
+        """Whether it does with speed there."""
+        rows, least = where_resistance_grows(self.model.ship, self.unknowns)
+        return bool(np.all(rows @ z >= least - INSIDE))
+
+    def best(self, z: np.ndarray) -> tuple[_Here, np.ndarray]:
+        """The last place at which the equations were made, begun at z, and the most probable one by them."""
+        here, far = self.at(z), NEAR
+        for _ in range(STEPS):
+            z, far = self.better(here, far)
+            if here.as_good_as(z):
+                break
+            here = self.at(z)
+        return here, z
 
     def values(self, z: np.ndarray) -> np.ndarray:
         return np.clip(
