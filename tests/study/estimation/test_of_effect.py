@@ -21,12 +21,12 @@ TURNED_BY_COMPASS = [(SensorDelay, "delay"), (HeadingLag, "lag"), (HeadingBias, 
 
 @pytest.fixture
 def sailing(tanker):
-    """The tanker with what its references told of the velocity, and these effects."""
+    """The tanker with what its references told of the velocity, and these effects alone."""
 
     def model(velocity_by=None, *effects):
         told = {} if velocity_by is None else {"instruments": {"velocity_by": velocity_by}}
         ship = replace(tanker, notes={k: v for k, v in tanker.notes.items() if k != "instruments"} | told)
-        return Model.of(ship).but(*effects)
+        return Model(ship, effects)
 
     return model
 
