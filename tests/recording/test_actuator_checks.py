@@ -45,6 +45,14 @@ def test_a_mistake_of_the_wiring_is_named_and_undone(kind, what, plant, words):
         assert answer(replace(wrong, columns=plant(dict(wrong.columns))), ship_of(kind)).ok
 
 
+def test_a_sway_that_the_yaw_contradicts_proves_no_wiring():
+    """Test: a boat of azimuths whose sway alone has the wrong sign. Expected: no mistake of the actuators is
+    proved, for their one force turns the boat, too."""
+    right = sailed("azimuths", SEED)
+    sway = {n: -x if n.startswith("sway") else x for n, x in right.columns.items()}
+    assert not answer(replace(right, columns=sway), ship_of("azimuths")).unusable
+
+
 def test_exchanged_sides_are_told_once_by_the_check_they_belong_to():
     right = sailed("thrusters", SEED)
     plant = next(m[2] for m in MISTAKES if m[:2] == ("thrusters", "sides exchanged"))

@@ -3,7 +3,8 @@
     du = a (motion of the hull) + sum of b_i X_i/m,  b_i >= 0;  dv and dr likewise with Y_i/m and N_i/I_z
 
 over windows, i each actuator ahead and each astern: how strong they are nobody needs to know here, only which
-way they push and turn it. Asked once for the record as it is and once for every way in which it may be wired
+way they push and turn it. Each has one strength in surge, sway and yaw, for it is one force: what noise makes of
+one axis, the others contradict. Asked once for the record as it is and once for every way in which it may be wired
 otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is believed.
 """
 
@@ -24,7 +25,7 @@ AXES = ("surge", "sway", "yaw")
 LENGTHS = (3, 6, 12, 24, 48)  # of windows, in steps of STEP_S at least
 STEP_S = 0.2
 LEAST_WINDOWS = 12  # windows that do not overlap
-LEAST_SHARE = 0.1  # share of an axis' motion that thrust must explain to tell anything of it
+LEAST_SHARE = 0.1  # share of an axis' motion that thrust must explain, or add to, to tell anything of it
 LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded one
 # models of hulls are off by less: of an axis' motion, what the other wiring must explain more, or the most
 # that it may leave of what is not explained as recorded; to be believed, and to be told
@@ -91,7 +92,8 @@ def _answer(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedW
     saw = f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}{second}"
     sides = " (or exchange their x_m and y_m in the ship file)" * ("exchange" in best.wiring.fix)
     fix = f"In the map: {best.wiring.fix}{sides}"
-    if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF):
+    contradicted = _better(as_is, best, HINT)  # by another axis, which the same force moves
+    if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF) and not contradicted:
         return wrong(name, f"{saw}: {best.wiring.text}, that is believed. {fix}.")
     return doubtful(name, f"{saw}. Not proved: more turning under thrust would tell. {fix}.")
 
@@ -157,7 +159,7 @@ def _tried(
     first, last = view.windows(seconds)
     u, v, r = motion
     hull = ((v * r, u, abs(u) * u), (u * r, v, abs(v) * v, r), (u * v, r, abs(r) * r, abs(u) * r, v))
-    gain, share = np.zeros(3), np.full(3, np.nan)
+    axes: dict[int, np.ndarray] = {}
     for i in range(3):
         change = motion[i][last] - motion[i][first]
         push = np.stack([view.summed(columns[i, :, k], first, last) for k in range(columns.shape[2])], axis=1)
@@ -166,11 +168,16 @@ def _tried(
         if np.count_nonzero(ok) / 2 < LEAST_WINDOWS or not np.ptp(push[ok], axis=0).any():
             continue
         both = _beside(others[ok], np.column_stack([change, push])[ok])
-        y, size = both[:, 0], float(both[:, 0] @ both[:, 0])
-        if size > 0.0:
-            left = nnls(both[:, 1:], y)[1] ** 2 / size
-            share[i] = max(0.0, 1.0 - left)
-            gain[i] = -0.25 * y.size * np.log(max(left, 1e-12)) if share[i] > LEAST_SHARE else 0.0
+        if (size := float(np.linalg.norm(both[:, 0]))) > 0.0:
+            axes[i] = both / size
+    gain, share = np.zeros(3), np.full(3, np.nan)
+    if axes:
+        of_all = np.concatenate(list(axes.values()))
+        strengths = nnls(of_all[:, 1:], of_all[:, 0])[0]
+    for i, both in axes.items():
+        left = float(np.sum((both[:, 0] - both[:, 1:] @ strengths) ** 2))
+        share[i] = max(0.0, 1.0 - left)
+        gain[i] = -0.25 * len(both) * np.log(max(left, 1e-12)) if abs(1.0 - left) > LEAST_SHARE else 0.0
     return TriedWiring(wiring, columns, gain, share)
 
 
