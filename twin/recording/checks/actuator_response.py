@@ -3,9 +3,10 @@
     du = a (motion of the hull) + sum of b_i X_i/m,  b_i >= 0;  dv and dr likewise with Y_i/m and N_i/I_z
 
 over windows, i each actuator ahead and each astern: how strong they are nobody needs to know here, only which
-way they push and turn it. Each has one strength in surge, sway and yaw, for it is one force: what noise makes of
-one axis, the others contradict. Asked once for the record as it is and once for every way in which it may be wired
-otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is believed.
+way they push and turn it. Each has one strength in surge, sway and yaw, for it is one force: what noise makes
+of one axis, the others contradict. Asked once for the record as it is and once for every way in which it may
+be wired otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is
+believed.
 """
 
 from dataclasses import dataclass
@@ -92,8 +93,9 @@ def _answer(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedW
     saw = f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}{second}"
     sides = " (or exchange their x_m and y_m in the ship file)" * ("exchange" in best.wiring.fix)
     fix = f"In the map: {best.wiring.fix}{sides}"
+    ahead = best.total - max(as_is.total, rival.total) >= LEAD
     contradicted = _better(as_is, best, HINT)  # by another axis, which the same force moves
-    if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF) and not contradicted:
+    if ahead and _better(best, as_is, PROOF) and not contradicted:
         return wrong(name, f"{saw}: {best.wiring.text}, that is believed. {fix}.")
     return doubtful(name, f"{saw}. Not proved: more turning under thrust would tell. {fix}.")
 
