@@ -78,5 +78,5 @@ def test_the_first_lines_of_python_give_the_result_that_stands_beside_them(folde
     done = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr[-2000:]
     compared, diagnosed = done.stdout.splitlines()
-    assert "11.0 m" in compared and "4.0 m" in compared
+    assert "11.3 m" in compared and "4.2 m" in compared
     assert "HullFouling" in diagnosed

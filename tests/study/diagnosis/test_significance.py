@@ -48,15 +48,15 @@ def clear(judged, name, z, covariance):
 
 
 def together(judged, z, covariance, intervals):
-    """What is told of a compass whose two numbers are these, with these 95 % intervals."""
+    """What is told of a screw whose two numbers are these, with these 95 % intervals."""
     case, found = judged
-    rows = [i for i, u in enumerate(case.effects) if u.owner == "HeadingBias"]
+    rows = [i for i, u in enumerate(case.effects) if u.owner == "PropellerWalk"]
     all_z, all_c = np.zeros(len(case.effects)), np.eye(len(case.effects))
     all_z[rows], all_c[np.ix_(rows, rows)] = z, covariance
     known = replace(found, posterior=replace(found.posterior, z=all_z, covariance=all_c))
     names = [case.effects[i].full_name for i in rows]
     numbers = [{"name": n, "low95": a, "high95": b} for n, (a, b) in zip(names, intervals, strict=True)]
-    return joint_significance(case, known, "HeadingBias", numbers)
+    return joint_significance(case, known, "PropellerWalk", numbers)
 
 
 NEAR = 0.25 - 0.5 * 0.05**2  # covariance of two numbers known to 0.5, and their difference to 0.05
@@ -81,26 +81,26 @@ def test_one_number_is_as_clear_as_its_standard_deviations_from_none(judged):
 
 
 def test_two_numbers_that_are_known_by_their_difference_alone_are_clear_together(judged):
-    """Test: a bias of 0.7 and what of it turned the velocity, each known to 0.5, their difference to 0.05.
+    """Test: two numbers, 0.7 and none, each known to 0.5, their difference to 0.05.
     Expected: far clearer than either, 0.7/0.5."""
     alike = 0.25 - 0.5 * 0.05**2
-    assert clear(judged, "HeadingBias", [0.7, 0.0], [[0.25, alike], [alike, 0.25]]) > 10.0
+    assert clear(judged, "PropellerWalk", [0.7, 0.0], [[0.25, alike], [alike, 0.25]]) > 10.0
 
 
 def test_a_second_number_that_says_nothing_makes_an_effect_no_clearer(judged):
-    both = clear(judged, "HeadingBias", [0.7, 0.0], [[0.04, 0.0], [0.0, 0.04]])
+    both = clear(judged, "PropellerWalk", [0.7, 0.0], [[0.04, 0.0], [0.0, 0.04]])
     assert 3.0 < both < 3.5
 
 
 def test_numbers_that_no_chance_makes_are_told_by_their_distance(judged):
-    assert clear(judged, "HeadingBias", [60.0, 0.0], np.eye(2)) == pytest.approx(60.0, abs=0.5)
+    assert clear(judged, "PropellerWalk", [60.0, 0.0], np.eye(2)) == pytest.approx(60.0, abs=0.5)
 
 
 def test_the_text_says_why_a_cause_is_named_of_which_no_number_is_clear_alone():
     """Expected: of what the ship file has, another word; of others, nothing."""
     number = {"name": "a", "value": 0.7, "low95": -0.3, "high95": 1.7, "unit": "m", "at_box_end": False}
     cause = {
-        "effect": "AntennaOffset",
+        "effect": "PropellerWalk",
         "probability": 0.9,
         "together_with": [],
         "parameters": [number],
