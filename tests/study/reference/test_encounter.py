@@ -8,7 +8,7 @@ import pytest
 from twin.physics.model import Model
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.encounter import met, one_frequency
-from twin.study.reference.seaway import LATELY, SWIFT, swung
+from twin.study.reference.seaway import LATELY, SWIFT, WAVES_LOG_BAYES, swung
 from twin.study.track.track import READINGS, track
 
 PERIOD_S, YAW_RATE = 8.0, 5e-4  # of a swell [rad/s]
@@ -34,7 +34,7 @@ def calm(tanker, voyages):
 
 def found(t, ship):
     time = float(ship.scale("time"))
-    return met(t, SWIFT * time, LATELY * time)
+    return met(t, SWIFT * time, LATELY * time, WAVES_LOG_BAYES)
 
 
 def test_a_swell_that_only_the_readings_show_has_its_period_and_strength(calm, tanker):

@@ -108,7 +108,7 @@ def _swinging(track: Track, model: Model) -> list[Track]:
     time = float(model.ship.scale("time"))
     if not segments([track], time):
         return []
-    shown = [*_along(track, model, time), *met(track, SWIFT * time, LATELY * time)]
+    shown = [*_along(track, model, time), *met(track, SWIFT * time, LATELY * time, WAVES_LOG_BAYES)]
     return [replace(track, swell=swell) for swell in shown]
 
 
