@@ -38,11 +38,22 @@ def found(t, ship):
 
 
 def test_a_swell_that_only_the_readings_show_has_its_period_and_strength(calm, tanker):
-    by_rate, by_heading = found(in_swell(calm), tanker)
+    by_rate, by_heading = (x for x in found(in_swell(calm), tanker) if not x[:, 3:5].any())
     for swell in (by_rate, by_heading):
         assert 2.0 * np.pi / swell[0, 2] == pytest.approx(PERIOD_S, rel=0.15)
         assert not swell[:, 3:5].any() and np.ptp(swell, axis=0).max() == 0.0
     assert by_rate[0, 5] == pytest.approx(2.0 * np.pi / PERIOD_S * YAW_RATE, rel=0.3)
+
+
+def test_what_it_swings_the_ship_in_sway_is_read_at_its_frequency(calm, tanker):
+    """Test: the swell with a sway velocity of 0.1 m/s over ground. Expected: of each reading of yaw one that swings
+    the ship in yaw alone, and one with this sway."""
+    rough = in_swell(calm)
+    measured = rough.measured.copy()
+    measured[:, READINGS.index("v")] += 0.1 * np.sqrt(2.0) * np.sin(2.0 * np.pi / PERIOD_S * calm.t)
+    alone, all_axes = found(replace(rough, measured=measured), tanker)[:2]
+    assert not alone[:, 3:5].any() and one_frequency(replace(calm, swell=all_axes))
+    assert all_axes[0, 4] == pytest.approx(0.1 * 2.0 * np.pi / PERIOD_S, rel=0.3)
 
 
 def test_the_study_sees_that_swell_and_no_half_of_it_in_calm_water(calm, tanker):

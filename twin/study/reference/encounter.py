@@ -6,68 +6,84 @@ slower than the waves. The readings have them whole, and with them their own noi
 the spectrum of the readings less the path (mean of pieces that overlap by half, Welch 1967) is flat but for
 the waves. A peak that white noise makes as likely as waves do is none (Whittle 1953)."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from twin.study.track.track import READINGS, STATE, Track
 from twin.study.track.waves import DAMPING, RESONANCE_OFFSET
 
-TO_ACCELERATION = {"r": 1, "psi": 2}  # derivatives that lead from each reading of yaw to it
+YAW = {"r": 1, "psi": 2}  # derivatives that lead from each reading of yaw to its acceleration
+AXES = ("u", "v")  # whose velocities over ground swing with it
 SAMPLES_A_PERIOD = 4  # no fewer
 
 
 def met(track: Track, slowest_s: float, piece_s: float, likelier: float) -> list[np.ndarray]:
     """Of each reading of yaw that has a peak in its spectrum, over pieces so long and swifter than
-    `slowest_s` [s], by so much log likelihood above the noise: (N, 6) waves of one frequency that swing the
-    ship in yaw, as in `Track.swell`."""
-    seen = [_peak(track, name, slowest_s, piece_s, likelier) for name in TO_ACCELERATION]
-    return [
-        np.tile([omega, omega, omega, 0.0, 0.0, size], (len(track), 1))
-        for omega, size in (x for x in seen if x is not None)
-    ]
+    `slowest_s` [s], by so much log likelihood above the noise: (N, 6) waves of one frequency as in
+    `Track.swell`, that swing the ship in yaw alone, and as the readings show them in surge and sway, too."""
+    out = []
+    for name in YAW:
+        spectrum = Spectrum.of(track, name, piece_s, slowest_s)
+        if spectrum is None or (at := spectrum.peak(likelier)) is None:
+            continue
+        omega = 2.0 * np.pi * at
+        yaw = omega ** YAW[name] * spectrum.swing(at)
+        others = (Spectrum.of(track, axis, piece_s, slowest_s) for axis in AXES)
+        surge, sway = (omega * x.swing(at) if x else 0.0 for x in others)
+        sizes = [(0.0, 0.0, yaw), (surge, sway, yaw)][: 1 + (surge + sway > 0.0)]
+        out += [np.tile([omega, omega, omega, *size], (len(track), 1)) for size in sizes]
+    return out
 
 
 def one_frequency(track: Track) -> bool:
-    """Whether its waves are of one frequency as the readings of yaw showed it, and swing the ship in yaw
-    alone."""
-    return track.swell is not None and not track.swell[:, 3:5].any()
+    """Whether its waves are of one frequency, as the readings of yaw showed it."""
+    return track.swell is not None and not np.ptp(track.swell[:, :3])
 
 
-def _peak(
-    track: Track, name: str, slowest_s: float, piece_s: float, likelier: float
-) -> tuple[float, float] | None:
-    """Frequency [rad/s] at which a reading swings most about the path, and the acceleration in yaw with
-    which it does so [rad/s2]; None where its spectrum has no peak that is so much likelier than noise."""
-    frequency, density, pieces = _spectrum(track, name, piece_s)
-    if frequency.size == 0:
-        return None
-    swift = np.flatnonzero(
-        (frequency > 1.0 / slowest_s) & (frequency <= 2.0 * frequency[-1] / SAMPLES_A_PERIOD)
-    )
-    if swift.size < 3:
-        return None
-    top = swift[np.argmax(density[swift])]
-    if top in (swift[0], swift[-1]):  # it rises on beyond: no peak
-        return None
-    at, width = frequency[top], DAMPING + RESONANCE_OFFSET
-    near = swift[np.abs(frequency[swift] / at - 1.0) <= width]
-    beside = np.median(density[frequency > 1.0 / slowest_s])
-    variance = (density[near] - beside).sum() * frequency[1]
-    omega, above = 2.0 * np.pi * at, density[near] / beside
-    if pieces * float(np.sum(above - 1.0 - np.log(above))) < likelier:
-        return None
-    return (omega, omega ** TO_ACCELERATION[name] * np.sqrt(variance)) if variance > 0.0 else None
+@dataclass(frozen=True)
+class Spectrum:
+    """Power density of a reading less the path, over frequencies [Hz] swifter than it manoeuvres, both (F,);
+    of how many pieces, and of the noise beside the waves."""
 
+    frequency: np.ndarray
+    density: np.ndarray
+    pieces: float
+    noise: float
 
-def _spectrum(track: Track, name: str, piece_s: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Frequencies [Hz] and the power density of a reading less the path, both (F,), and of how many pieces;
-    none where there are not two of them."""
-    values = track.measured[:, READINGS.index(name)] - track.state[:, STATE.index(name)]
-    there = np.flatnonzero(np.isfinite(values))
-    steps = int(np.median(np.diff(there))) if there.size > 1 else 0
-    piece = round(piece_s / (max(steps, 1) * track.h))
-    if steps == 0 or there.size < 2 * piece or piece < 2 * SAMPLES_A_PERIOD:
-        return np.zeros(0), np.zeros(0), 0.0
-    from scipy.signal import welch  # heavy, and only the study asks for it
+    @classmethod
+    def of(cls, track: Track, name: str, piece_s: float, slowest_s: float) -> "Spectrum | None":
+        """None where there are not two pieces of it, or too few samples for waves."""
+        values = track.measured[:, READINGS.index(name)] - track.state[:, STATE.index(name)]
+        there = np.flatnonzero(np.isfinite(values))
+        steps = int(np.median(np.diff(there))) if there.size > 1 else 0
+        piece = round(piece_s / (max(steps, 1) * track.h))
+        if steps == 0 or there.size < 2 * piece or piece < 2 * SAMPLES_A_PERIOD:
+            return None
+        from scipy.signal import welch  # heavy, and only the study asks for it
 
-    even = np.interp(np.arange(there[0], there[-1] + 1, steps), there, values[there])
-    return *welch(even, 1.0 / (steps * track.h), nperseg=piece), even.size / piece
+        even = np.interp(np.arange(there[0], there[-1] + 1, steps), there, values[there])
+        frequency, density = welch(even, 1.0 / (steps * track.h), nperseg=piece)
+        swift = frequency > 1.0 / slowest_s
+        waves = swift & (frequency <= 2.0 * frequency[-1] / SAMPLES_A_PERIOD)
+        if np.count_nonzero(waves) < 3:
+            return None
+        return cls(frequency[waves], density[waves], even.size / piece, float(np.median(density[swift])))
+
+    def peak(self, likelier: float) -> float | None:
+        """Where it swings most [Hz]; None where it rises on beyond, or white noise makes such a peak nearly
+        as likely as waves do."""
+        top = int(np.argmax(self.density))
+        if top in (0, self.density.size - 1):
+            return None
+        above = self.density[self._near(self.frequency[top])] / self.noise
+        gain = self.pieces * float(np.sum(above - 1.0 - np.log(above)))
+        return float(self.frequency[top]) if gain >= likelier and above.mean() > 1.0 else None
+
+    def swing(self, at: float) -> float:
+        """Standard deviation of what it swings there, beyond the noise."""
+        beyond = float(np.sum(self.density[self._near(at)] - self.noise))
+        return float(np.sqrt(max(0.0, beyond) * (self.frequency[1] - self.frequency[0])))
+
+    def _near(self, at: float) -> np.ndarray:
+        return np.abs(self.frequency / at - 1.0) <= DAMPING + RESONANCE_OFFSET
