@@ -72,3 +72,9 @@ def test_readings_that_are_too_few_for_waves_show_none(calm, tanker):
     sparse[np.arange(len(calm)) % 50 != 0] = np.nan
     assert found(replace(calm, measured=sparse), tanker) == []
     assert found(replace(calm, measured=np.full_like(sparse, np.nan)), tanker) == []
+
+
+def test_readings_that_are_the_path_itself_show_no_waves(calm, tanker):
+    exact = calm.measured.copy()
+    exact[:, HEADING], exact[:, RATE] = calm.state[:, 2], calm.state[:, 5]
+    assert found(replace(calm, measured=exact), tanker) == []

@@ -71,10 +71,10 @@ class Spectrum:
         return cls(frequency[waves], density[waves], even.size / piece, float(np.median(density[swift])))
 
     def peak(self, likelier: float) -> float | None:
-        """Where it swings most [Hz]; None where it rises on beyond, or white noise makes such a peak nearly
-        as likely as waves do."""
+        """Where it swings most [Hz]; None where it rises on beyond, where there is no noise to hold it
+        against, or where white noise makes such a peak nearly as likely as waves do."""
         top = int(np.argmax(self.density))
-        if top in (0, self.density.size - 1):
+        if top in (0, self.density.size - 1) or not self.noise > 0.0:
             return None
         above = self.density[self._near(self.frequency[top])] / self.noise
         gain = self.pieces * float(np.sum(above - 1.0 - np.log(above)))
