@@ -3,6 +3,7 @@ there is none."""
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,8 +20,8 @@ from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
-from twin.study.update.added import sailing_time
-from twin.study.update.adding import fitted
+from twin.study.update.added import notes, sailing_time
+from twin.study.update.adding import Number, fitted
 from twin.study.update.addition import add
 from twin.study.update.proof import HeldOutProof, block_interval, prove
 
@@ -258,3 +259,14 @@ def test_an_effect_of_the_one_screw_is_refused_for_a_ship_with_actuators(tmp_pat
 
 def test_how_much_more_sailing_is_told_in_seconds_where_runs_last_a_minute():
     assert [sailing_time(s) for s in (54.0, 150.0, 7300.0)] == ["54 s", "2 minutes", "2 hours"]
+
+
+def test_weather_that_does_not_show_is_not_said_to_have_been_there(kvlcc2):
+    """Test: beside an effect a stream that is clear, and a wind whose numbers may all be none. Expected: the
+    voyages had the stream; the wind was left open."""
+    sizes = (("Current", "north", 0.2, 0.4), ("Current", "east", -0.1, 0.1), ("Wind", "c_x", 0.0, 1.4))
+    beside = [Number(e, n, "", (a + b) / 2, 0.1, a, b, 0.5, False) for e, n, a, b in sizes]
+    made = SimpleNamespace(names=("HullFouling",), numbers=[], beside=beside)
+    told = notes(kvlcc2, made, [], [], False)
+    assert any("had Current of their own" in x and "Wind" not in x for x in told)
+    assert any("not clear on these voyages: Wind" in x for x in told)

@@ -14,7 +14,7 @@ from twin.recording.checks import whose
 from twin.recording.jsonable import short
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.structure import noise_model_of
-from twin.study.update.adding import UNTOUCHED, Fitted
+from twin.study.update.adding import UNTOUCHED, Fitted, Number
 from twin.study.update.fall import Fall
 from twin.study.update.proof import HeldOutProof
 
@@ -114,13 +114,26 @@ def notes(
             "or in its place. Ask twin diagnose, "
             "and check the particulars of the ship."
         )
-    if made.beside:
-        notes.append(
-            f"These voyages had {', '.join(dict.fromkeys(n.effect for n in made.beside))} of their own, "
-            "fitted beside it and not written to the "
-            "ship file."
-        )
+    notes += _beside(made.beside)
     return notes + _of_the_day(set(made.names), sailed, held_out)
+
+
+def _beside(numbers: Sequence[Number]) -> list[str]:
+    """What weather and water the voyages had, and what was left open beside it and does not show."""
+    clear = list(dict.fromkeys(n.effect for n in numbers if n.low95 > 0.0 or n.high95 < 0.0))
+    open_too = list(dict.fromkeys(n.effect for n in numbers if n.effect not in clear))
+    return [
+        f"{start} {', '.join(names)} {end}"
+        for start, names, end in (
+            ("These voyages had", clear, "of their own, fitted beside it and not written to the ship file."),
+            (
+                "Fitted beside it, and not clear on these voyages:",
+                open_too,
+                "(not written to the ship file).",
+            ),
+        )
+        if names
+    ]
 
 
 def _of_the_day(names: set[str], sailed: Sequence[Sailed], held_out: Sequence[Sailed]) -> list[str]:
