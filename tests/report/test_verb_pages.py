@@ -232,3 +232,16 @@ def test_any_numbers_make_a_drawing_whose_points_are_inside_it(values):
         assert points
         for x, y in (map(float, p.split(",")) for p in points):
             assert 0.0 <= x <= wide and 0.0 <= y <= high
+
+
+def test_the_page_of_a_diagnosis_expects_of_the_ship_what_compare_expects(tmp_path):
+    """Test: Monday's diagnosis as a page, and compare of the same voyage. Expected: the same expected errors."""
+    ship, monday = twin.Ship.load(SHIP), twin.read_voyage(MONDAY)
+    path = tmp_path / "diagnosis.html"
+    twin.diagnose(ship, monday).write_page(path)
+    drawn, said = data_of(path)["result"]["horizons"], twin.compare(ship, monday).to_dict()["horizons"]
+    assert [h["horizon_s"] for h in drawn] == [h["horizon_s"] for h in said]
+    for a, b in zip((h["noise_floor"] for h in drawn), (h["noise_floor"] for h in said), strict=True):
+        assert a["of"] == b["of"] == "reference voyages"
+        for error in ("position_mae_m", "lateral_mae_m", "heading_mae_deg"):
+            assert a[error] == pytest.approx(b[error], rel=0.05)

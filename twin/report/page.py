@@ -13,6 +13,7 @@ from twin.report.series import shown
 from twin.report.words import sentence, title
 from twin.study.estimation.start import waves_in_words, waves_on
 from twin.study.prediction import locate, score
+from twin.study.prediction.expected import with_expected_errors
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.unexplained import energy
 from twin.study.reference.sailed import switched_off
@@ -71,7 +72,6 @@ def content(
             "result": result,
             "voyages": drawn,
             "longest_s": longest,
-            "floor": "sensors and structure" if structural else "sensors",
         }
     )
 
@@ -85,7 +85,7 @@ def _whole(
     structural: bool,
 ) -> dict[str, Any]:
     """The result, with what the page shows of every verb worked out where it is absent."""
-    rows = score.horizons(windows, asked, structural)
+    rows = with_expected_errors(score.horizons(windows, asked, structural), windows, model.ship)
     result.setdefault("horizons", rows)
     if rows:
         longest, nearer = rows[-1]["horizon_s"], rows[max(len(rows) - 2, 0)]["horizon_s"]

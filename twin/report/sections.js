@@ -1,4 +1,5 @@
 // The parts of the page that every verb has.
+const EXPECTED = { sensors: "what a perfect model would show through these instruments", "reference voyages": "what predictions of this ship's reference voyages were off by, each left out of the fit" };
 const MEASURES = [["position", "position_mae_m", "m"], ["across", "lateral_mae_m", "m"], ["heading", "heading_mae_deg", "deg"]];
 
 /** Errors by horizon over the expected ones, on one logarithmic scale. */
@@ -19,7 +20,7 @@ function errorsSection() {
   const marks = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].filter((x) => x <= top && x >= low);
   const ticks = el(".ticks", null, marks.map((x) => el("span", { style: { left: P(x) } }, x === 1 ? "expected" : `×${x}`)));
   box.append(el("div"), ticks, el("div"));
-  const about = `open loop from the measured state, ${RESULT.horizons.map((h) => h.windows).slice(-1)[0]} windows; expected: ${DATA.floor === "sensors" ? "what a perfect model would show through these instruments" : "what instruments and the calibrated model's own limits leave"}`;
+  const about = `open loop from the measured state, ${RESULT.horizons.map((h) => h.windows).slice(-1)[0]} windows; expected: ${EXPECTED[RESULT.horizons.length ? RESULT.horizons[0].noise_floor.of : "sensors"] || "what instruments and the calibrated model's own limits leave"}`;
   const key = rows.some((r) => r.then !== null) ? [["var(--before)", "before"], ["var(--model)", "after"]] : [["var(--good)", "below 1.5 times the expected"], ["var(--model)", "more"]];
   const legend = el(".legend", null, key.map(([colour, word]) => el("span", null, el("i.box", { style: { background: colour } }), word)));
   return section("Error over the expected error", about, legend, box, forces());

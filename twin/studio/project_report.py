@@ -71,7 +71,6 @@ def content(project: Project) -> dict[str, Any]:
             "verdict": _sentence(now, name),
             "result": result,
             "voyages": [],
-            "floor": "sensors and structure" if ship.get("calibrated") else "sensors",
             "made_s": round(time.time()),
             "version": __version__,
             "files": files,
