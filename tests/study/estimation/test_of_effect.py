@@ -41,22 +41,16 @@ def test_without_a_word_of_the_references_the_turning_is_a_number_of_its_own(sai
         assert names(effect, sailing(unknown)) == [number, "turned"]
 
 
+@pytest.mark.parametrize(("by", "turned"), [("compass", 0.3), ("receiver", 0.0)])
 @pytest.mark.parametrize(("effect", "number"), TURNED_BY_COMPASS)
-def test_what_the_compass_turns_is_as_late_or_as_far_off_as_the_reading(sailing, effect, number):
-    model = sailing("compass")
+def test_what_the_compass_turns_is_as_far_off_as_its_reading_and_what_the_receiver_turns_is_right(
+    sailing, effect, number, by, turned
+):
+    model = sailing(by)
     (only,) = effect_unknowns(effect, model)
     off = next(e for e in changed(model, only, 0.3, catalogue()).effects if type(e) is effect)
     assert only.name == number
-    assert off.values() == {number: 0.3, "turned": 0.3}
-
-
-@pytest.mark.parametrize(("effect", "number"), TURNED_BY_COMPASS)
-def test_a_receiver_with_an_attitude_of_its_own_shows_nothing_of_it_in_its_velocity(sailing, effect, number):
-    model = sailing("receiver")
-    (only,) = effect_unknowns(effect, model)
-    off = next(e for e in changed(model, only, 0.3, catalogue()).effects if type(e) is effect)
-    assert only.name == number
-    assert off.values() == {number: 0.3, "turned": 0.0}
+    assert off.values() == {number: 0.3, "turned": turned}
 
 
 @pytest.mark.parametrize("by", ["compass", "receiver"])
