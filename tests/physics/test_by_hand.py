@@ -6,6 +6,8 @@ import pytest
 
 from twin.physics import core
 from twin.physics.effects import find
+from twin.physics.effects.hull_asymmetry import HullAsymmetry
+from twin.physics.effects.hull_damping import HullDamping
 from twin.physics.effects.rudder_play import RudderPlay
 from twin.physics.effects.swaying_mass import SwayingMass
 from twin.physics.model import Model
@@ -269,3 +271,28 @@ def test_what_swings_aside_with_her_by_hand(ship):
     assert c.m_rv * v_dot + c.m_r * r_dot == pytest.approx(
         tau[2] - ship.m * (0.02 * L * aside + 0.005 * L**2 * r_dot)
     )
+
+
+def test_a_hull_that_is_not_alike_on_both_sides_by_hand(ship):
+    """Test: the flow along the hull, ahead and astern. Expected: side force and moment with its square, to the
+    other side when going astern."""
+    f = 0.5 * ship.rho * ship.L_pp * ship.T * 5.0**2
+    bent = HullAsymmetry(Y_0=0.01, N_0=-0.002)
+    for u_r, way in ((5.0, 1.0), (-5.0, -1.0)):
+        push = bent.force(Situation(u_r=u_r), ship)
+        assert (push.X, push.Y, push.N) == (
+            0.0,
+            pytest.approx(way * 0.01 * f),
+            pytest.approx(way * -0.002 * f * ship.L_pp),
+        )
+
+
+def test_another_damping_of_the_hull_by_hand(ship):
+    """Test: a moment of drifting and turning. Expected: Y less by sway u v, N less by yaw u r, nothing else."""
+    s, c, L = Situation(u=5.0, v=0.6, r=0.02, n=1.5, delta=0.2), ship.c, ship.L_pp
+    tau = [sum(force) for force in zip(*Model(ship).known(s).values(), strict=True)]
+    u_dot, v_dot, r_dot = Model(ship, (HullDamping(sway=0.1, yaw=-0.01),)).nu_dot(s)
+    f = 0.5 * ship.rho * L * ship.T
+    assert c.m_u * u_dot == pytest.approx(tau[0])
+    assert c.m_v * v_dot + c.m_vr * r_dot == pytest.approx(tau[1] - 0.1 * f * 5.0 * 0.6)
+    assert c.m_rv * v_dot + c.m_r * r_dot == pytest.approx(tau[2] + 0.01 * f * L**2 * 5.0 * 0.02)

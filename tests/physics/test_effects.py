@@ -37,6 +37,7 @@ ISSUE = [
     "AntennaOffset",
     "SensorDelay",
     "GyroBias",
+    "GyroScale",
     "HeadingLag",
     "CompassDeviation",
     "ReceiverSmoothing",
@@ -54,6 +55,7 @@ MIRRORED = {  # parameters that do so too
     "SpeedLogMisalignment": {"angle"},
     "AntennaOffset": {"starboard"},
     "GyroBias": {"bias"},
+    "HullAsymmetry": {"Y_0", "N_0"},
     "CompassDeviation": {"A", "C", "E"},
     "VaryingCurrent": {"east"} | {f"east_{wave}{k}" for wave in "cs" for k in "123"},
 }

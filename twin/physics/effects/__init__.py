@@ -19,8 +19,11 @@ from .cross_flow_drag import CrossFlowDrag
 from .current import Current
 from .external_force import ExternalForce
 from .gyro_bias import GyroBias
+from .gyro_scale import GyroScale
 from .heading_bias import HeadingBias
 from .heading_lag import HeadingLag
+from .hull_asymmetry import HullAsymmetry
+from .hull_damping import HullDamping
 from .hull_fouling import HullFouling
 from .loading import Loading
 from .of_actuator import OfActuator, of
@@ -71,12 +74,13 @@ BUILT_IN: tuple[type[Effect], ...] = (
     AntennaOffset,
     SensorDelay,
     GyroBias,
+    GyroScale,
     HeadingLag,
     CompassDeviation,
     ReceiverSmoothing,
 )
 # known by their form, so that nothing of the catalogue is named in their place
-UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
+UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass, HullAsymmetry, HullDamping)
 # families: each is an effect for every actuator that it suits (`ThrusterWear.port`)
 OF_ACTUATORS: tuple[type[OfActuator], ...] = (
     ThrusterWear,
