@@ -67,7 +67,8 @@ def references(ship: RandomShip) -> list[SailedCase]:
 
 
 def plan(ship: RandomShip, voyages: int = VOYAGES) -> list[FleetCase]:
-    """What is hidden on each of its voyages: effects that its instruments could show at all."""
+    """What is hidden on each of its voyages: effects that its instruments could show at all. A rudder that is
+    stuck where its angle is recorded hides nothing: such a voyage is one of a healthy ship."""
     rng = generator(ship, 2)
     names = [n for n in hidden_causes.CATALOGUE if can_show(ship, n)]
     out = []
@@ -77,9 +78,9 @@ def plan(ship: RandomShip, voyages: int = VOYAGES) -> list[FleetCase]:
         among = list(hidden_causes.OUTSIDE) if kind == "outside" else names
         picked = sorted(str(n) for n in rng.choice(among, count, replace=False))
         low = -1.8 if kind == "single" else -0.7
-        out.append(
-            FleetCase(ship.family, ship.seed, i, kind, {n: exp(rng.uniform(low, 0.5)) for n in picked})
-        )
+        hidden = {n: exp(rng.uniform(low, 0.5)) for n in picked}
+        kind = kind if all(can_show(ship, n) for n in picked) else "nothing"
+        out.append(FleetCase(ship.family, ship.seed, i, kind, hidden))
     return out
 
 
@@ -93,6 +94,7 @@ def can_show(ship: RandomShip, name: str) -> bool:
         "Bank": kit.has_bank,
         "RollCoupling": kit.has_roll and ship.family != "heeling",
         "SteeringLag": ship.drive.ordered,
+        "StuckRudder": ship.drive.ordered,
     }.get(name, kit.has_log if name.startswith("SpeedLog") else True)
 
 

@@ -1,5 +1,7 @@
 """The fleet of families: ships that are ships, mirrored alike, and hidden things that show."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -77,6 +79,17 @@ def test_a_case_is_the_same_whenever_it_is_sailed(ships):
     case = voyage_plan.plan(ship)[0]
     one, two = voyage_plan.sailed(ship, case), voyage_plan.sailed(ship, case)
     assert all(np.array_equal(one.columns[c], two.columns[c], equal_nan=True) for c in one.columns)
+
+
+def test_a_stuck_rudder_hides_nothing_where_its_own_angle_is_recorded(ships, monkeypatch):
+    """Test: a stuck rudder on every voyage, of a ship that records the order and of one that records the
+    rudder. Expected: outside the catalogue, and a healthy ship that was steered so."""
+    monkeypatch.setattr(hidden_causes, "OUTSIDE", {"StuckRudder": hidden_causes.OUTSIDE["StuckRudder"]})
+    monkeypatch.setattr(voyage_plan, "SHARES", {"outside": 1.0})
+    ship = ships["modulus"]
+    for ordered, kind in ((True, "outside"), (False, "nothing")):
+        cases = voyage_plan.plan(replace(ship, drive=replace(ship.drive, ordered=ordered)))
+        assert {(c.kind, *c.hidden) for c in cases} == {(kind, "StuckRudder")}
 
 
 def test_wilsons_interval_by_hand():

@@ -146,6 +146,24 @@ def test_why_an_effect_is_not_named(changes, reason):
     assert ("HullFouling" in decide(f).missing) is (reason is None)
 
 
+@pytest.mark.parametrize(
+    "changes, verdict, missing",
+    [
+        ({"belongs_to": "instrument"}, "missing", ("SpeedLogScale",)),
+        ({"belongs_to": "instrument", "significance": 2.0}, "unknown", ()),
+        ({"belongs_to": "ship"}, "unknown", ()),
+    ],
+)
+def test_an_instrument_that_disagrees_is_named_although_nothing_explains_where_the_ship_went(
+    changes, verdict, missing
+):
+    """Expected: it is named, and that more is missing said; a force is not, for it would have to explain that."""
+    one = cause("SpeedLogScale", in_explanation=False, **changes)
+    lost = replace(LEFT, error=2.5, share=1.1)
+    answer = decide(facts(one, likeliest=("SpeedLogScale",), left=lost))
+    assert (answer.verdict, answer.missing, answer.more) == (verdict, missing, verdict == "missing")
+
+
 def test_a_second_cause_is_named_only_when_it_is_nearly_certain_and_the_one_that_explains_more_comes_first():
     first, second = cause(alone=30.0), cause("RudderWear", alone=90.0, probability=0.95)
     assert decide(facts(first, second)).missing == ("RudderWear", "HullFouling")

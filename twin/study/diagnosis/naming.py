@@ -35,8 +35,9 @@ def weather_named(f: Facts) -> tuple[str, ...]:
 CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit wins
     CauseRule(
         "not_in_explanation",
-        lambda f, c: not c.in_explanation,
-        "it is no part of the explanation",
+        lambda f, c: not c.in_explanation and not _by_readings_alone(f, c),
+        "it is no part of the explanation; where nothing explains where the ship went, an instrument of the "
+        "likeliest hypothesis may be named all the same, for it disagrees with the others wherever that is",
     ),
     CauseRule(
         "as_on_references",
@@ -86,6 +87,12 @@ SECOND_WHEN = (
     "none of these holds, but another cause that may be named explains more alone, and the probability of "
     f"this one is below {percent(criteria.CERTAIN)}"
 )
+
+
+def _by_readings_alone(f: Facts, c: Cause) -> bool:
+    """Whether nothing explains where the ship went, and this is an instrument that disagrees with the others:
+    what moves the ship does not speak against it."""
+    return not f.explanation and c.belongs_to == "instrument" and c.effect in f.likeliest
 
 
 def _nearer(c: Cause) -> bool:
