@@ -41,6 +41,7 @@ BEFORE = {
 ALARMS = 0.04  # share of healthy voyages on which an alarm may be raised, at the working point
 COST = 5.0  # of a false alarm beyond that, in hidden causes that are named
 WRONG = 0.5  # of a wrong name
+HEALTHY = 0.98  # share of the healthy voyages that end within `NEARLY` times the expected error
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -101,6 +102,16 @@ def moved(rows: Sequence[Row]) -> dict[str, float]:
                 if new > top + 0.01:
                     top, best = new, best | {name: value}
     return best
+
+
+def healthy_limits(rows: Sequence[Row]) -> dict[str, float]:
+    """What HEALTHY of the healthy voyages end within, in expected errors, the day's weather in the model: of
+    all (""), and of all but a family, by its name."""
+    errors = [(r["family"], r["read"].error_nothing) for r in rows if r["kind"] == "nothing"]
+    return {
+        left_out: float(np.quantile([e for family, e in errors if family != left_out], HEALTHY))
+        for left_out in ("", *_families(rows))
+    }
 
 
 def examples(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray]:

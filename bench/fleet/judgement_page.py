@@ -42,8 +42,8 @@ def judgement(rows: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
     fitted = decision_fit.fitted_lines(decision_fit.held_out(read, fit))
     told = probability_fit.page_lines(probability_fit.fitted(probability_fit.examples(read)))
     tables = [*_batches(rows, every), *_further(), *in_detail(every)]
-    tables += _practices([decided(r) for r in every])
-    return "\n".join([*head(every), *tables, *fitted, *_moved(read), *told, *cost(every)]) + "\n"
+    tables += [*_practices([decided(r) for r in every]), *fitted, *_healthy(read), *_moved(read)]
+    return "\n".join([*head(every), *tables, *told, *cost(every)]) + "\n"
 
 
 def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
@@ -116,3 +116,16 @@ def _moved(rows: Sequence[Row]) -> list[str]:
     text = "All voyages, decided by the table of today with `SIGNIFICANT` as it is (5) and moved."
     titles = ("", *(f"`SIGNIFICANT` {value:g}" for value in STRICTER))
     return lines("One threshold moved", text, titles, body)
+
+
+def _healthy(rows: Sequence[Row]) -> list[str]:
+    """How far healthy voyages end from where the model with the day's weather has them."""
+    limits = decision_fit.healthy_limits(rows)
+    others = [limit for left_out, limit in limits.items() if left_out]
+    count = sum(r["kind"] == "nothing" for r in rows)
+    return [
+        f"`NEARLY` is on no grid, for it steers the search as well: {decision_fit.HEALTHY:.0%} of the "
+        f"{count} healthy voyages end within {limits['']:.2f} times the expected error, {min(others):.2f} to "
+        f"{max(others):.2f} with a family left out.",
+        "",
+    ]

@@ -1,12 +1,14 @@
 """The fleet of families: ships that are ships, mirrored alike, and hidden things that show."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from bench.fleet import fleet_weather, hidden_causes, instrument_recording, sail, voyage_plan
 from bench.fleet.answer_score import Share, right, wrong_names
+from bench.fleet.decision_fit import healthy_limits
 from bench.fleet.fleet_legs import zigzag
 from bench.fleet.hull_families import FAMILIES
 from bench.fleet.plausibility import build
@@ -113,3 +115,14 @@ def test_a_slow_compass_has_a_name_by_now_and_beside_another_it_is_wrong():
     assert not right(row | {"missing": ["SensorDelay"]})
     assert right(row | {"missing": [], "verdict": "unknown"})
     assert not right(row | {"hidden": {"Ice": 1.0}, "missing": ["HeadingLag"]})
+
+
+def test_what_healthy_voyages_end_within_leaves_each_family_out():
+    """Test: healthy voyages of one family that end within 0.00 to 1.00 of what is expected, of another at 3, and
+    one with something hidden. Expected: 98 of 100 within 0.98 without the other family."""
+    row = lambda family, error, kind="nothing": {
+        "family": family, "kind": kind, "read": SimpleNamespace(error_nothing=error)
+    }  # fmt: skip
+    rows = [row("near", k / 100) for k in range(101)] + [row("far", 3.0)] * 9 + [row("near", 9.0, "single")]
+    limits = healthy_limits(rows)
+    assert limits["far"] == pytest.approx(0.98) and limits["near"] == limits[""] == pytest.approx(3.0)

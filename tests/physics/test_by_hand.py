@@ -280,11 +280,8 @@ def test_a_hull_that_is_not_alike_on_both_sides_by_hand(ship):
     bent = HullAsymmetry(Y_0=0.01, N_0=-0.002)
     for u_r, way in ((5.0, 1.0), (-5.0, -1.0)):
         push = bent.force(Situation(u_r=u_r), ship)
-        assert (push.X, push.Y, push.N) == (
-            0.0,
-            pytest.approx(way * 0.01 * f),
-            pytest.approx(way * -0.002 * f * ship.L_pp),
-        )
+        assert push.X == 0.0 and pytest.approx(way * 0.01 * f) == push.Y
+        assert pytest.approx(way * -0.002 * f * ship.L_pp) == push.N
 
 
 def test_another_damping_of_the_hull_by_hand(ship):

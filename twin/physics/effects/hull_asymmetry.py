@@ -14,7 +14,7 @@ from twin.physics.state import Situation
 class HullAsymmetry(Force):
     """The flow along the hull pushes it to one side and turns it: something sticks out on one side."""
 
-    source = "Abkowitz (1964) Lectures on ship hydrodynamics, HyA report Hy-5 (Y_0, N_0 of an asymmetric hull)"
+    source = "Abkowitz (1964) Lectures on ship hydrodynamics, HyA report Hy-5 (forces of asymmetry)"
 
     Y_0: float = param(0.01, unit="-", lo=-0.1, hi=0.1, sd=0.01, doc="side force, positive to starboard")
     N_0: float = param(0.003, unit="-", lo=-0.03, hi=0.03, sd=0.003, doc="yaw moment, positive to starboard")

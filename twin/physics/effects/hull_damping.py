@@ -11,10 +11,10 @@ from twin.physics.effect import Force, S, param
 class HullDamping(Force):
     """The hull sets more, or less, against drifting and turning than it did, and is as heavy and as deep."""
 
-    source = "Fossen (2021) Handbook of marine craft hydrodynamics and motion control, ch. 6 (D(nu), Y_uv, N_ur)"
+    source = "Fossen (2021) Handbook of marine craft hydrodynamics and motion control, ch. 6 (D)"
 
-    sway: float = param(0.1, unit="-", lo=-1.0, hi=1.0, sd=0.1, doc="damping of sway beyond the model's, -Y_uv")
-    yaw: float = param(0.02, unit="-", lo=-0.2, hi=0.2, sd=0.02, doc="damping of yaw beyond the model's, -N_ur")
+    sway: float = param(0.1, unit="-", lo=-1.0, hi=1.0, sd=0.1, doc="more damping of sway, -Y_uv")
+    yaw: float = param(0.02, unit="-", lo=-0.2, hi=0.2, sd=0.02, doc="more damping of yaw, -N_ur")
 
     def alter(self, ship: S) -> S:
         d = ship.derivatives
