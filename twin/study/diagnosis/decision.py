@@ -57,10 +57,10 @@ def is_explained(f: Facts) -> bool:
 def nameless(f: Facts) -> bool:
     """Whether something is at work that has no name, or that the best explanation leaves over; beside an
     instrument that is named it is said to be missing, too (`Decision.more`)."""
-    return f.unknown >= criteria.LOST or not (is_explained(f) or by_readings_alone(f))
+    return f.unknown >= criteria.LOST or not (is_explained(f) or instrument_alone(f))
 
 
-def by_readings_alone(f: Facts) -> bool:
+def instrument_alone(f: Facts) -> bool:
     """Whether an instrument is named although nothing explains where the ship went."""
     return not f.explanation and bool(named(f))
 
