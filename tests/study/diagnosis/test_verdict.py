@@ -103,6 +103,14 @@ def test_of_which_few_effects_one_is_surely_there(chances, names):
     assert group(weighed, w) == names
 
 
+def test_what_is_known_by_its_form_alone_may_be_one_of_the_few():
+    """Test: a walking propeller or a tow, or a hull that is not alike on both sides. Expected: one of the three."""
+    chances = {"PropellerWalk": 0.5, "HullAsymmetry": 0.26, "TowForce": 0.23, "": 0.01}
+    weighed = [Hypothesis((name,) if name else (), "usual", math.log(p), 0.0) for name, p in chances.items()]
+    w = Weights(0.01, 0.26, {"PropellerWalk": 0.5, "TowForce": 0.23}, weighed[0], {"HullAsymmetry": 0.26})
+    assert group(weighed, w) == ["PropellerWalk", "HullAsymmetry", "TowForce"]
+
+
 def test_no_probability_is_told_beyond_what_was_ever_measured():
     assert capped(1.0) == MOST_SAID and capped(0.0) == pytest.approx(1.0 - MOST_SAID) and capped(0.7) == 0.7
 

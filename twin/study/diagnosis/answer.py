@@ -39,6 +39,12 @@ class SearchAnswer:
         return self.case.causes(self.decision.missing)
 
     @property
+    def resembling(self) -> tuple[str, ...]:
+        """What is known by its form alone and is likely; of a few effects of which one is there, those."""
+        of_few = tuple(n for n in self.considered.facts.one_of if n in self.case.unnamed)
+        return of_few if self.decision.reason == "one_of" else self.considered.facts.resembles
+
+    @property
     def shown(self) -> Sets:
         """The set of effects in which what is named stands with its numbers."""
         exact, named = self.case.ordered(self.decision.missing), set(self.decision.missing)

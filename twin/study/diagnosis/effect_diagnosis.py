@@ -72,7 +72,7 @@ def diagnose(
         **_decided(told),
         "candidates": listed,
         "rivals": rivals(told.weighed, found),
-        "resembles": [_candidate(told, n, told.weights.unnamed[n]) for n in considered.facts.resembles],
+        "resembles": [_candidate(told, n, told.weights.unnamed[n]) for n in told.resembling],
         "answer": {
             "not_named": told.decision.not_named,
             "lasting": [n for n in told.decision.missing if case.catalogue[n].lasts()],
@@ -259,10 +259,10 @@ def _next(
         ),
         None,
     )
-    effects, one_of = told.weights.effects, told.considered.facts.one_of
-    asked = one_of if decision.reason == "one_of" else askable(effects, told.seen)
+    w, one_of = told.weights, told.considered.facts.one_of
+    asked = one_of if decision.reason == "one_of" else askable(w.effects, told.seen)
     if rivals is None and decision.verdict == "undecided" and len(asked) > 1:
-        first, second, *_ = sorted(asked, key=lambda n: -effects[n])
+        first, second, *_ = sorted(asked, key=lambda n: -w.each[n])
         rivals = (first, second)
     if rivals is None:
         return None

@@ -82,7 +82,10 @@ def unexplained(result: Result) -> str:
 
 def one_of(result: Result) -> str:
     """One of several effects, which nobody can tell apart."""
-    *others, last = [likely(result, n) for n in result["one_of"]]
+    known_by_form = {c["effect"] for c in result["resembles"]}
+    *others, last = [
+        f"something like {n}" if n in known_by_form else likely(result, n) for n in result["one_of"]
+    ]
     return (
         f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them "
         "apart."

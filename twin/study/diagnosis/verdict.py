@@ -58,6 +58,11 @@ class Weights:
     unnamed: Mapping[str, float] = field(default_factory=dict)  # of what is known by its form alone
     weather: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def each(self) -> dict[str, float]:
+        """Of every cause, with those that are known by their form alone."""
+        return {**self.effects, **self.unnamed}
+
 
 def weights(case: Case, weighed: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]) -> Weights:
     """The probabilities of all answers, from those of the hypotheses; a stream that may change and was
@@ -135,9 +140,10 @@ def one_of(weighed: Sequence[Hypothesis], names: Sequence[str]) -> float:
 
 def group(weighed: Sequence[Hypothesis], w: Weights) -> list[str]:
     """The fewest effects, likeliest first, of which one is surely there though none of them is likely enough
-    to be named; none when that takes too many, or when it may be nothing or something unknown."""
-    likeliest = sorted(w.effects, key=lambda n: -w.effects[n])
-    if w.unknown >= LOST or w.effects[likeliest[0]] >= SURE:
+    to be named, those that are known by their form alone among them; none when that takes too many, or when
+    it may be nothing or something unknown."""
+    likeliest = sorted(w.each, key=lambda n: -w.each[n])
+    if w.unknown >= LOST or w.each[likeliest[0]] >= SURE:
         return []
     groups = (likeliest[:k] for k in range(2, LARGEST_GROUP + 1))
     return next((names for names in groups if one_of(weighed, names) >= CERTAIN), [])
