@@ -37,7 +37,6 @@ ISSUE = [
     "AntennaOffset",
     "SensorDelay",
     "GyroBias",
-    "GyroScale",
     "HeadingLag",
     "CompassDeviation",
     "ReceiverSmoothing",
