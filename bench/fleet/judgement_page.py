@@ -124,8 +124,8 @@ def _healthy(rows: Sequence[Row]) -> list[str]:
     others = [limit for left_out, limit in limits.items() if left_out]
     count = sum(r["kind"] == "nothing" for r in rows)
     return [
+        "",
         f"`NEARLY` is on no grid, for it steers the search as well: {decision_fit.HEALTHY:.0%} of the "
         f"{count} healthy voyages end within {limits['']:.2f} times the expected error, {min(others):.2f} to "
         f"{max(others):.2f} with a family left out.",
-        "",
     ]

@@ -13,7 +13,7 @@ LOST = 0.5  # of something without a name, from which no name is given: likelier
 # log Bayes factor [natural log]
 CLEAR = 3.0  # 20 to 1 (Kass & Raftery 1995): by which a change is asked for, or two effects told apart
 # ratios of open-loop errors [1]
-NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (fitted: 1.66 to 1.80)
+NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (fitted: 1.68 to 1.82)
 MOSTLY = 0.5  # share of the error without it that an explanation may leave although more is missing
 BETTER = 0.05  # share by which a force must reduce the open-loop error; less is scatter
 # others
