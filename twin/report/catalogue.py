@@ -134,7 +134,8 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     name = effect.__name__ + ".NAME" * (issubclass(effect, OfActuator) and not effect.actuator)
     add = f"next: twin add {name} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
-    return "\n".join([*lines, "", "next: mend it; no ship file holds it" if effect in UNNAMED else add])
+    mend = "next: mend it, or calibrate again where it is to stay; no ship file holds it"
+    return "\n".join([*lines, "", mend if effect in UNNAMED else add])
 
 
 def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
@@ -177,7 +178,7 @@ def page(effects: list[type[Effect]]) -> str:
         "## Known by their form alone",
         "",
         "No members of the catalogue, and not to be added to a ship file: what a repair mends is no part of "
-        "a ship. `twin diagnose` asks for them, "
+        "a ship, and what is to stay is found by calibrating again. `twin diagnose` asks for them, "
         "so that nothing else is named in their place; where one explains the voyages best the answer is "
         "`unknown`, and what it resembles.",
         "",

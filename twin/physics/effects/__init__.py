@@ -174,7 +174,7 @@ def find(name: str) -> type[Effect]:
     if name in (e.__name__ for e in UNNAMED):
         raise SettingsError(
             f"{name} is known by its form alone: what a repair mends is no part of a ship "
-            f"file. What it is: twin effects {name}."
+            f"file; what is to stay is found by twin calibrate. What it is: twin effects {name}."
         )
     found, broken = _installed()
     if name in found:
