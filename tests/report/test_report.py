@@ -156,6 +156,11 @@ def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resemb
         assert words in dom
     # which does not explain it; and is no effect of the catalogue
     assert "twin add Current" not in dom and "twin add RudderPlay" not in dom
+    result |= {"verdict": "undecided", "one_of": ["Current", "RudderPlay"]}
+    report.write(tmp_path / "d.html", "diagnose", result, [track], Model.of(kvlcc2))
+    dom, complaints = opened(tmp_path / "d.html")
+    assert complaints == [] and "It may be something like this" in dom
+    assert "twin add Current" in dom and "twin add RudderPlay" not in dom
 
 
 def test_the_page_of_add_shows_before_and_after(verb, on_disk, stream, tmp_path):

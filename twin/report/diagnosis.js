@@ -5,9 +5,9 @@ function addCommand(names) {
 }
 
 function rankingSection() {
-  const list = RESULT.candidates || [], out = [];
-  for (const c of RESULT.resembles || []) out.push(el("p.note", null, `It resembles this, which is not in the catalogue of effects. ${c.says}`), candidate(c));
-  for (const c of list) out.push(candidate(c));
+  const undecided = RESULT.verdict === "undecided", like = undecided ? "It may be something like this" : "It resembles this";
+  const forms = (RESULT.resembles || []).flatMap((c) => [el("p.note", null, `${like}, which is not in the catalogue of effects. ${c.says}`), candidate(c)]);
+  const causes = (RESULT.candidates || []).map(candidate), out = undecided ? [...causes, ...forms] : [...forms, ...causes];
   if (!out.length) out.push(el("p.note", null, "No cause is likely enough to be shown."));
   if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, allowed for whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map(readable).map((p) => withUnit(`${p.name} ${num(p.value)}`, p)).join(", ")})`).join("; ")));
   if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log Bayes factor behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
@@ -36,7 +36,8 @@ function candidate(c) {
 
 /** Whether an effect that is not named may be added all the same: one of several when the voyages could not tell, or a rival of what is named. */
 function worthTrying(effect) {
-  const named = (RESULT.candidates || []).filter((c) => (RESULT.missing || []).includes(c.effect));
+  const causes = RESULT.candidates || [], named = causes.filter((c) => (RESULT.missing || []).includes(c.effect));
+  if (!causes.some((c) => c.effect === effect)) return false; // known by its form alone: no ship file holds it
   return RESULT.verdict === "undecided" || named.some((c) => (c.cannot_be_told_from || []).includes(effect));
 }
 
