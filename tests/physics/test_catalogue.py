@@ -50,6 +50,8 @@ def test_a_wrong_name_gets_the_nearest_one_and_exit_code_5(capsys):
     assert main(["effects", "Winde"]) == 5
     said = capsys.readouterr().err
     assert "Did you mean 'Wind'" in said and said.count("\n") == 1
+    assert main(["effects", "HullAsymetry"]) == 5
+    assert "Did you mean 'HullAsymmetry'" in capsys.readouterr().err
 
 
 def blocks():

@@ -183,5 +183,6 @@ def find(name: str) -> type[Effect]:
         raise SettingsError(
             f"The installed effect {name} cannot be used: {broken[name]}. Try: twin effects --check {name}"
         )
-    known = [*catalogue(), *(f"{e.__name__}.NAME" for e in OF_ACTUATORS)]
+    forms = (e.__name__ for e in UNNAMED)
+    known = [*catalogue(), *forms, *(f"{e.__name__}.NAME" for e in OF_ACTUATORS)]
     raise SettingsError(f"Unknown effect {name!r}.{did_you_mean(name, known)}")
