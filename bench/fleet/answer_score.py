@@ -79,6 +79,13 @@ def gains(row: Row) -> bool:
     return oracle is not None and bool(oracle["with_m"] <= (1 - GAINS) * oracle["without_m"])
 
 
+def each_gains(row: Row) -> bool:
+    """Whether each of several hidden causes of ship and instruments, the others known, would bring the ship a
+    tenth nearer."""
+    gain_by_each = (row.get("oracle") or {}).get("gain_by_each")
+    return bool(gain_by_each) and all(gain >= GAINS for gain in gain_by_each.values())
+
+
 def wrong_names(row: Row) -> set[str]:
     return causes(row["missing"]) - set(row["hidden"]).union(*(BY_NOW.get(n, ()) for n in row["hidden"]))
 

@@ -4,7 +4,7 @@ each voyage; a row of facts and truth for each."""
 
 import pickle
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -20,9 +20,10 @@ from twin.physics.ship import Ship as Model
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.calibration.core_fit import calibrate
+from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.effect_diagnosis import Diagnosed, diagnose
 from twin.study.diagnosis.open_loop_check import held_out_error
-from twin.study.diagnosis.refine import refine
+from twin.study.diagnosis.refine import Found, refine
 from twin.study.first_model.first_estimate import OPTIONS, first_model
 from twin.study.reference.sailed import Sailed as Reference
 from twin.study.track.track import track
@@ -158,7 +159,8 @@ def _rows_of_voyage(ship: RandomShip, case: FleetCase, model: Model, facts: dict
 
 def oracle(said: Diagnosed, case: FleetCase) -> dict[str, Any] | None:
     """Open-loop error with the best of the day's weather that holds nothing of what is hidden, and with what
-    is truly hidden beside the day's weather [m]."""
+    is truly hidden beside the day's weather [m]; of several causes, by what share each of them brings that
+    error down, the others known."""
     c = said.case
     true = c.ordered([n for n in case.hidden if n in CATALOGUE])
     if len(true) < len(case.hidden) or not true:
@@ -170,21 +172,40 @@ def oracle(said: Diagnosed, case: FleetCase) -> dict[str, Any] | None:
         return name not in (*true, *held) and not set(c.catalogue[name].holds) & set(true)
 
     day = tuple(n for n in said.result["facts"]["likeliest"] if n in c.weather and apart(n))
-    chosen = c.ordered((*day, *true))
     without = min(
         f.open_loop_error_m
         for s, f in said.found.items()
         if np.isfinite(f.open_loop_error_m) and not c.causes(s) and all(map(apart, s))
     )
+    found, error = _known(said, (*day, *true))
+    causes = c.causes(true) if len(true) > 1 else ()
+    less = {n: _known(said, (*day, *(m for m in true if m != n)))[1] for n in causes}
+    return {
+        "without_m": without,
+        "with_m": error,
+        "gain_by_each": {n: 1 - error / of for n, of in less.items()},
+        "numbers": _numbers(c, found, true),
+    }
+
+
+def _known(said: Diagnosed, effects: Iterable[str]) -> tuple[Found, float]:
+    """This set fitted to the voyage, and its open-loop error [m]."""
+    c = said.case
+    chosen = c.ordered(effects)
     found = said.found.get(chosen)
     if found is None:
         found = refine(c, chosen, "usual", np.zeros(len(c.effects)), ())[0]
-    error = found.open_loop_error_m if np.isfinite(found.open_loop_error_m) else held_out_error(c, found)
-    numbers = {}
-    for i, u in enumerate(c.effects):
-        if u.owner in true:
-            numbers[u.label] = [
-                float(u.centre + u.sd * found.posterior.z[i]),
-                float(u.sd * found.posterior.covariance[i, i] ** 0.5),
-            ]
-    return {"without_m": without, "with_m": error, "numbers": numbers}
+    error = found.open_loop_error_m
+    return found, error if np.isfinite(error) else held_out_error(c, found)
+
+
+def _numbers(c: Case, found: Found, effects: Iterable[str]) -> dict[str, list[float]]:
+    """Each number of these effects with its standard deviation."""
+    return {
+        u.label: [
+            float(u.centre + u.sd * found.posterior.z[i]),
+            float(u.sd * found.posterior.covariance[i, i] ** 0.5),
+        ]
+        for i, u in enumerate(c.effects)
+        if u.owner in effects
+    }

@@ -72,12 +72,17 @@ FIGURES: dict[
         lambda r: bool(answer_score.causes(r["missing"])),
     ),
     "two causes, both named": (">= 85 %", lambda r: r["kind"] == "pair", answer_score.right),
-    "two causes, both named, where their oracle gains 10 %": (
+    "the same where each of the two gains 10 %, the other known": (
         "",
-        lambda r: r["kind"] == "pair" and answer_score.gains(r),
+        lambda r: r["kind"] == "pair" and answer_score.each_gains(r),
         answer_score.right,
     ),
     "three causes, all named": (">= 70 %", lambda r: r["kind"] == "triple", answer_score.right),
+    "the same where each of the three gains 10 %, the others known": (
+        "",
+        lambda r: r["kind"] == "triple" and answer_score.each_gains(r),
+        answer_score.right,
+    ),
     "outside the catalogue: `unknown`, or undecided without a name": (
         ">= 85 %",
         lambda r: r["kind"] == "outside",

@@ -38,6 +38,7 @@ COLUMNS = (
     "sizes",
     "oracle_without_m",
     "oracle_with_m",
+    "gain_by_each",
     "p_value",
     "p_value_at_best",
     "cpu_s",
@@ -83,6 +84,7 @@ def line(row: Row, asked: str) -> dict[str, str]:
         "sizes": _pairs(_sizes(row)),
         "oracle_without_m": _shown(oracle.get("without_m"), 5),
         "oracle_with_m": _shown(oracle.get("with_m"), 5),
+        "gain_by_each": _pairs({name: _shown(of) for name, of in oracle.get("gain_by_each", {}).items()}),
         "p_value": _shown(row.get("p_value"), 4),
         "p_value_at_best": _shown(row.get("p_value_at_best"), 4),
         "cpu_s": _shown(row["cpu_s"]),
@@ -167,6 +169,7 @@ def _row(of: Mapping[str, str], facts: dict[str, Any]) -> dict[str, Any]:
     numbers = {name: [float(x) for x in text.split("/")] for name, text in _named(of["sizes"])}
     named = [name for name in of["named"].split("; ") if name]
     told = {name for name in of["weather"].split("; ") if name} - set(named)
+    each = {name: float(gain) for name, gain in _named(of["gain_by_each"])}
     without, best = _number(of["oracle_without_m"]), _number(of["oracle_with_m"])
     return {
         "key": of["voyage"],
@@ -185,7 +188,7 @@ def _row(of: Mapping[str, str], facts: dict[str, Any]) -> dict[str, Any]:
             for name, p in _named(of["posteriors"])
         ],
         "truths": {name: values[3] for name, values in numbers.items()},
-        "oracle": None if without is None else {"without_m": without, "with_m": best},
+        "oracle": None if without is None else {"without_m": without, "with_m": best, "gain_by_each": each},
         "p_value": _number(of["p_value"]),
         "p_value_at_best": _number(of["p_value_at_best"]),
         "cpu_s": float(of["cpu_s"]),
@@ -214,9 +217,18 @@ def of_batch(rows: Sequence[Row], asked: str) -> list[Row]:
 
 
 def together(rows: Sequence[Row]) -> list[Row]:
-    """One answer a voyage: the latest. What the truth gains is as first asked, for all answers alike."""
+    """One answer a voyage: the latest. What the truth gains is as first measured, for all answers alike."""
     first = {row["key"]: row for row in rows if row["asked"] != "again"}
     later = {
-        row["key"]: {**row, "oracle": first[row["key"]]["oracle"]} for row in rows if row["asked"] == "again"
+        row["key"]: {**row, "oracle": _first_measured(first[row["key"]]["oracle"], row["oracle"])}
+        for row in rows
+        if row["asked"] == "again"
     }
     return [later.get(key, row) for key, row in first.items()]
+
+
+def _first_measured(first: Mapping[str, Any] | None, later: Mapping[str, Any] | None) -> Any:
+    """Of several causes, what each gains is measured since 28 November 2026 alone."""
+    if first is None or first["gain_by_each"] or later is None:
+        return first
+    return {**first, "gain_by_each": later["gain_by_each"]}

@@ -6,7 +6,7 @@ import pytest
 
 from bench.fleet.fact_rows import oracle
 
-KINDS = {"Wind": (), "Current": (), "VaryingCurrent": ("Current",), "TowForce": ()}
+KINDS = {"Wind": (), "Current": (), "VaryingCurrent": ("Current",), "TowForce": (), "RudderWear": ()}
 WEATHER = ("Wind", "Current", "VaryingCurrent")
 
 
@@ -45,6 +45,23 @@ def test_a_hidden_cause_is_held_against_the_best_weather_alone():
     errors = {(): 40.0, ("Current",): 14.0, ("TowForce",): 30.0, ("Current", "TowForce"): 5.0}
     told = oracle(answered(errors, ("Current", "TowForce")), hidden("TowForce"))
     assert (told["without_m"], told["with_m"]) == (14.0, 5.0)
+
+
+def test_of_two_hidden_causes_each_is_worth_what_it_gains_beside_the_other():
+    errors = {(): 40.0, ("TowForce",): 10.0, ("RudderWear",): 39.0, ("TowForce", "RudderWear"): 9.5}
+    told = oracle(answered(errors, ()), hidden("TowForce", "RudderWear"))
+    assert told["gain_by_each"] == pytest.approx({"TowForce": 1 - 9.5 / 39, "RudderWear": 0.05})
+
+
+def test_a_cause_beside_hidden_weather_is_worth_what_it_gains_beside_it():
+    errors = {(): 40.0, ("Wind",): 20.0, ("TowForce",): 30.0, ("Wind", "TowForce"): 10.0}
+    told = oracle(answered(errors, ()), hidden("Wind", "TowForce"))
+    assert told["gain_by_each"] == pytest.approx({"TowForce": 0.5})
+
+
+def test_a_cause_alone_has_its_oracle_and_nothing_beside_it():
+    errors = {(): 40.0, ("TowForce",): 5.0}
+    assert oracle(answered(errors, ()), hidden("TowForce"))["gain_by_each"] == {}
 
 
 def test_what_the_twin_has_no_form_of_has_no_oracle():
