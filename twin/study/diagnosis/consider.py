@@ -12,6 +12,7 @@ from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.criteria import CLEAR, SURE
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
+from twin.study.diagnosis.irregular import comes_and_goes
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import roughly
 from twin.study.diagnosis.refine import Found, Sets
@@ -91,6 +92,7 @@ def consider(
         weather=tuple(sorted(weather, key=lambda c: -c.probability)),
         as_before=case.as_before,
         reached=healthy.reached if healthy else None,
+        comes_and_goes=comes_and_goes(case, found[explanation or w.best.effects]),
     )
     return Considered(facts, base, pushes, like, healthy)
 
