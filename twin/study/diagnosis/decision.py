@@ -13,7 +13,7 @@ from twin.num import num, percent
 from twin.study.diagnosis import criteria
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.facts import Facts, Left
-from twin.study.diagnosis.naming import SECOND_NOT_SURE, missed, named, weather_named, why_not
+from twin.study.diagnosis.naming import FITFUL, SECOND_NOT_SURE, fitful, missed, named, weather_named, why_not
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,10 @@ VERDICTS = {  # and what each says
     "unknown": "Something is missing, and no effect of the catalogue that could be named explains it.",
     "undecided": "These voyages cannot tell; the reason says why, and often what to sail next.",
 }
-UNEXPLAINED, PUSH, SEA = (
+UNEXPLAINED, PUSH, FITS, SEA = (
     "something is unexplained",
     "a stretch had a push of its own",
+    "what acts like a cause comes and goes, and no cause may be named",
     "a sea was measured that may move the ship",
 )
 RULES: tuple[Rule, ...] = (
@@ -142,6 +143,20 @@ RULES: tuple[Rule, ...] = (
         "unknown",
         say.pushed,
         f"{PUSH}, and no cause may be named",
+    ),
+    Rule(
+        "weather_may_mislead",
+        lambda f: fitful(f) and not named(f) and f.sea,
+        "undecided",
+        say.weather,
+        f"{FITS}, and {SEA}",
+    ),
+    Rule(
+        FITFUL,
+        lambda f: fitful(f) and not named(f),
+        "unknown",
+        say.comes_and_goes,
+        FITS,
     ),
     Rule(
         "weather_only",

@@ -77,8 +77,7 @@ class Facts:
     # share of the reference voyages, each left out in turn, that a single cause explains as much; None: the
     # ship file lacks their scores [1]
     reached: float | None = None
-    # how much likelier is a force of the explanation's causes that comes and goes than one as steady as their
-    # forms? [log Bayes factor]
+    # how probable is it that the force of the explanation's causes comes and goes, and does not last? [1]
     comes_and_goes: float = 0.0
 
     def as_json(self) -> dict[str, Any]:

@@ -1,41 +1,50 @@
 """A force that comes and goes: whether what acts like a cause lasts all voyage, as that cause does.
 
 Ice that is met now and then takes speed as fouling does, and a propeller that draws air as a worn one does.
-An effect of the catalogue is there at every moment, with the force that its form has for how the ship sails.
-So the explanation's causes are asked whether the voyages are likelier when as much of their force, for some
-ship lengths at a time, may be there or not, as of an effect that comes and goes with what no input shows."""
+Where a force comes and goes faster than a ship answers, its mean looks like an effect that lasts, and the
+rest like a rough day. So the two are held against each other: the effect and a fast part of the noise model
+as these voyages show it (`settle` in case.py), and that part as on the reference voyages, beside as much of
+the effect's own force, there or not from moment to moment. On a rough day the noise does not follow it."""
 
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import expit
 
-from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.refine import IRREGULAR, Found, standing
+from twin.study.diagnosis.case import ODDS, ODDS_UNNAMED, Case
+from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import accelerations
 from twin.study.reference.evidence import posterior
 
+SHARES = (0.5, 0.7, 1.0, 1.4)  # of the causes' mean force, that may come and go
+
 
 def comes_and_goes(case: Case, found: Found) -> float:
-    """How much likelier the voyages are when the force of this hypothesis' causes comes and goes than when it
-    is as steady as their forms [log Bayes factor]; 0 without a cause that exerts a force."""
+    """How probable it is [1] that the force of this hypothesis' causes comes and goes, and has no name,
+    rather than lasts on a day as rough as these voyages show; 0 where no cause exerts a force."""
+    gain = log_bayes_factor(case, found)
+    return 0.0 if gain is None else float(expit(gain + np.log(ODDS_UNNAMED / ODDS)))
+
+
+def log_bayes_factor(case: Case, found: Found) -> float | None:
+    """How much likelier the voyages are when that force comes and goes [log Bayes factor]; None where no
+    cause exerts one."""
     chosen = found.hypothesis.effects
     if not case.causes(chosen):
-        return 0.0
+        return None
     lines, at = standing(case, found)
     forces = [_of_causes(case, line) for line in lines]
-    if not any(np.any(force) for force in forces):
-        return 0.0
-    noise_model = case.scenarios([found.hypothesis.scenario], found.doubt)
-
-    def evidence(share: float) -> float:
-        loose = [
-            replace(line, slack=np.hypot(line.slack, share * force))
-            for line, force in zip(lines, forces, strict=True)
-        ]
-        return posterior(case.reduced(loose, noise_model, at)[0], chosen).log_evidence
-
-    return max(map(evidence, IRREGULAR)) - evidence(0.0)
+    if not any(map(np.any, forces)):
+        return None
+    (rough,) = case.scenarios([found.hypothesis.scenario], found.doubt)
+    usual = replace(rough, white=case.white)
+    fitful = [
+        [replace(line, fitful=share * force) for line, force in zip(lines, forces, strict=True)]
+        for share in SHARES
+    ]
+    lasting = posterior(case.reduced(lines, [rough], at)[0], chosen).log_evidence
+    return max(posterior(case.reduced(f, [usual], at)[0], chosen).log_evidence for f in fitful) - lasting
 
 
 def _of_causes(case: Case, line: Linear) -> np.ndarray:

@@ -32,6 +32,7 @@ def weather_named(f: Facts) -> tuple[str, ...]:
     return tuple(c.effect for c in ones if c.sea_force or not c.in_explanation or _nearer(c))
 
 
+FITFUL = "comes_and_goes"  # of what acts like a cause, but not all the time
 CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit wins
     CauseRule(
         "not_in_explanation",
@@ -81,6 +82,12 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
         "it belongs to no instrument, a sea was measured that may move the ship, and without any cause the "
         f"model leaves no more than {num(criteria.NEARLY)} times the expected error",
     ),
+    CauseRule(
+        FITFUL,
+        lambda f, c: c.belongs_to == "ship" and f.comes_and_goes >= criteria.LOST,
+        "it belongs to the ship, and with a probability of "
+        f"{percent(criteria.LOST)} or more the force of the explanation comes and goes",
+    ),
 )
 SECOND_NOT_SURE = "second_not_sure"  # of what might be named were it the only one
 SECOND_WHEN = (
@@ -115,6 +122,11 @@ def _too_small(f: Facts, c: Cause) -> bool:
 def why_not(f: Facts, c: Cause) -> str | None:
     """Why a cause may not be named: the first rule that applies; None where none does."""
     return next((rule.reason for rule in CAUSE_RULES if rule.condition(f, c)), None)
+
+
+def fitful(f: Facts) -> bool:
+    """Whether a cause is not named for this alone, that its force comes and goes."""
+    return any(why_not(f, c) == FITFUL for c in f.causes)
 
 
 def named(f: Facts) -> tuple[str, ...]:

@@ -73,6 +73,15 @@ def pushed(result: Result) -> str:
     )
 
 
+def comes_and_goes(result: Result) -> str:
+    """Something is missing that does not act all the time."""
+    like = next(c for c in result["candidates"] if c["effect"] in result["answer"]["not_named"])
+    return (
+        "Something is missing that comes and goes, and is not in the catalogue of effects. While it acts it "
+        f"resembles {like['effect']}, which would last: {like['says']}"
+    )
+
+
 def unexplained(result: Result) -> str:
     """Something is missing that no effect explains."""
     near = _near(result)
@@ -173,6 +182,7 @@ def why_not(c: Result, reason: str) -> str:
         if nearer(c)
         else f"adding it does not reduce the open-loop error ({with_it})",
         "weather_may_mislead": ROUGHLY,
+        "comes_and_goes": "what acts like it comes and goes, and it would act all the time",
         "second_not_sure": f"a second cause needs {100.0 * CERTAIN:.0f} %: it may only be correcting an "
         "error in the form of the first",
     }[reason]

@@ -196,13 +196,15 @@ def _noise(
     ship, h = lines[0].model.ship, _steps(lines, where)
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
     new_b, new_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
+    fitful = abreast([np.broadcast_to(np.square(x.fitful), (len(x.track), 3)) for x in lines], where)
     new = []
     for noise_model in noise_models:
         slow = new_b[:, None] * abreast([_slow(x, noise_model) for x in lines], where)
         out = np.zeros((*slow.shape[:2], STATES))
         out[..., PLACE] = (noise_model.wander**2 * h)[:, None]
         out[..., HEADING] = noise_model.heading_wander**2 * h
-        out[..., SPEEDS] = (np.array(noise_model.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
+        white = np.array(noise_model.white) * standard(lines[0].model)
+        out[..., SPEEDS] = (white**2 + fitful) * (h * time)[:, None]
         out[..., SLOW], out[..., FLOW] = slow, (new_c * (noise_model.flow * speed) ** 2)[:, None]
         new.append(out)
     reading = [abreast([_reading(x.track, f)[:, rows] for x in lines], where) for f in noise_models]

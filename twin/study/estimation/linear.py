@@ -60,6 +60,7 @@ class Linear:
     # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
     doubted: np.ndarray | float = 0.0
     slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model
+    fitful: np.ndarray | float = 0.0  # (N, 3): and one that comes and goes within the ship's time
 
     def only(self, columns: np.ndarray) -> "Linear":
         """The same with some of the unknowns (places, in the order that is wanted). `columns` (K,): index."""
