@@ -13,6 +13,7 @@ from scipy.special import expit
 
 from twin.study.diagnosis.case import ODDS, ODDS_UNNAMED, Case
 from twin.study.diagnosis.refine import Found, standing
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import accelerations
 from twin.study.reference.evidence import posterior
@@ -28,8 +29,8 @@ def comes_and_goes(case: Case, found: Found) -> float:
 
 
 def log_bayes_factor(case: Case, found: Found) -> float | None:
-    """How much likelier the voyages are when that force comes and goes [log Bayes factor]; None where no
-    cause exerts one."""
+    """How much likelier the voyages are when that force comes and goes than when it lasts, on a day that is
+    rough or as the references were [log Bayes factor]; None where no cause exerts one."""
     chosen = found.hypothesis.effects
     if not case.causes(chosen):
         return None
@@ -39,12 +40,12 @@ def log_bayes_factor(case: Case, found: Found) -> float | None:
         return None
     (rough,) = case.scenarios([found.hypothesis.scenario], found.doubt)
     usual = replace(rough, white=case.white)
-    fitful = [
-        [replace(line, fitful=share * force) for line, force in zip(lines, forces, strict=True)]
-        for share in SHARES
-    ]
-    lasting = posterior(case.reduced(lines, [rough], at)[0], chosen).log_evidence
-    return max(posterior(case.reduced(f, [usual], at)[0], chosen).log_evidence for f in fitful) - lasting
+
+    def evidence(noise_model: NoiseModel, share: float) -> float:
+        fitful = [replace(line, fitful=share * f) for line, f in zip(lines, forces, strict=True)]
+        return posterior(case.reduced(fitful, [noise_model], at)[0], chosen).log_evidence
+
+    return max(evidence(usual, share) for share in SHARES) - max(evidence(n, 0.0) for n in (rough, usual))
 
 
 def _of_causes(case: Case, line: Linear) -> np.ndarray:
