@@ -126,6 +126,33 @@ def test_which_fact_turns_nothing_missing_into_what(changes, verdict, reason):
 
 
 @pytest.mark.parametrize(
+    "changes, verdict, reason, missing",
+    [
+        ({}, "unknown", "comes_and_goes", ()),
+        ({"sea": True}, "undecided", "weather_may_mislead", ()),
+        ({"comes_and_goes": 0.8}, "missing", "named", ("RudderWear",)),
+        ({"unknown": 0.6}, "unknown", "unexplained", ()),
+        ({"weather": (cause("Current", belongs_to="voyage"),)}, "unknown", "comes_and_goes", ()),
+    ],
+)
+def test_a_force_that_comes_and_goes_is_no_cause_that_lasts(changes, verdict, reason, missing):
+    answer = decide(facts(cause("RudderWear"), **{"comes_and_goes": 0.95, **changes}))
+    assert (answer.verdict, answer.reason, answer.missing) == (verdict, reason, missing)
+    assert (answer.not_named.get("RudderWear") == "comes_and_goes") == (not missing)
+
+
+def test_an_instrument_is_named_beside_a_force_that_comes_and_goes():
+    bias = cause("HeadingBias", belongs_to="instrument")
+    answer = decide(facts(cause("RudderWear"), bias, comes_and_goes=0.95))
+    assert answer.missing == ("HeadingBias",) and answer.not_named == {"RudderWear": "comes_and_goes"}
+
+
+def test_a_cause_that_could_not_be_named_anyhow_does_not_come_and_go():
+    likely = cause("RudderWear", probability=0.6, with_rivals=0.6)
+    assert decide(facts(likely, comes_and_goes=0.95)).reason == "cannot_tell"
+
+
+@pytest.mark.parametrize(
     "changes, reason",
     [
         ({}, None),

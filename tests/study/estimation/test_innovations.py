@@ -11,6 +11,7 @@ from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
 from twin.study.estimation.linear import linearise
 from twin.study.estimation.of_effect import effect_unknowns
+from twin.study.estimation.respond import standard
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import READINGS, track
@@ -258,3 +259,17 @@ def test_a_turned_compass_that_is_known_costs_nothing(judged):
     for told, expected in zip(shown.total(), (A, b, ee), strict=True):
         np.testing.assert_allclose(told, expected, rtol=0.02, atol=1e-3 * np.abs(expected).max())
     assert float(believed.ee.sum()) > float(ee) + 20.0
+
+
+def test_a_force_that_comes_and_goes_is_noise_as_large_as_the_force(judged):
+    """Test: half of the fast part of the noise model's variance as a force that is the same all voyage.
+    Expected: the normal equations of the whole fast part."""
+    t, model, unknowns = judged
+    line = linearise(t, model, unknowns, catalogue())
+    whole = NoiseModel(white=(0.1, 0.06, 0.04))
+    half = replace(whole, white=tuple(np.sqrt(0.5) * np.array(whole.white)))
+    force = np.sqrt(0.5) * np.array(whole.white) * standard(model)
+    expected = innovate([line], [whole])[0]
+    said = innovate([replace(line, fitful=np.tile(force, (len(t), 1)))], [half])[0]
+    np.testing.assert_allclose(said.A, expected.A, rtol=1e-6)
+    np.testing.assert_allclose(said.logdet, expected.logdet, rtol=1e-6)

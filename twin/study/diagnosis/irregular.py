@@ -39,13 +39,13 @@ def log_bayes_factor(case: Case, found: Found) -> float | None:
     if not any(map(np.any, forces)):
         return None
     (rough,) = case.scenarios([found.hypothesis.scenario], found.doubt)
-    usual = replace(rough, white=case.white)
+    calm = replace(rough, white=case.white)
 
     def evidence(noise_model: NoiseModel, share: float) -> float:
         fitful = [replace(line, fitful=share * f) for line, f in zip(lines, forces, strict=True)]
         return posterior(case.reduced(fitful, [noise_model], at)[0], chosen).log_evidence
 
-    return max(evidence(usual, share) for share in SHARES) - max(evidence(n, 0.0) for n in (rough, usual))
+    return max(evidence(calm, share) for share in SHARES) - max(evidence(n, 0.0) for n in (rough, calm))
 
 
 def _of_causes(case: Case, line: Linear) -> np.ndarray:
