@@ -39,12 +39,12 @@ def test_noise_that_the_cause_makes_needless_speaks_for_nothing(case_of):
     assert log_bayes_factor(shaken, found(case, "RudderWear")) < -CLEARLY
 
 
-@pytest.mark.parametrize("name", ["HeadingBias", "Wind"])
-def test_an_instrument_and_the_weather_exert_no_force_that_could_come_and_go(case_of, name):
+@pytest.mark.parametrize("name, cause", [("HeadingBias",) * 2, ("Wind",) * 2, ("IceLike", "TowForce")])
+def test_only_of_what_belongs_to_the_ship_it_is_asked_whether_it_lasts(case_of, name, cause):
+    """An instrument exerts no force, and weather and a tow need not be steady."""
     case = case_of(name)
-    assert (
-        log_bayes_factor(case, found(case, name)) is None and comes_and_goes(case, found(case, name)) == 0.0
-    )
+    assert log_bayes_factor(case, found(case, cause)) is None
+    assert comes_and_goes(case, found(case, cause)) == 0.0
 
 
 def test_a_rudder_that_wore_between_two_voyages_is_named(tanker, voyages):

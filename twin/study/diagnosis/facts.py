@@ -77,7 +77,8 @@ class Facts:
     # share of the reference voyages, each left out in turn, that a single cause explains as much; None: the
     # ship file lacks their scores [1]
     reached: float | None = None
-    # how probable is it that the force of the explanation's causes comes and goes, and does not last? [1]
+    # how probable is it that the force of the explanation's causes that belong to the ship comes and goes,
+    # and does not last? [1]
     comes_and_goes: float = 0.0
 
     def as_json(self) -> dict[str, Any]:

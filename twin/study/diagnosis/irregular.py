@@ -1,11 +1,13 @@
-"""A force that comes and goes: whether what acts like a cause lasts all voyage, as that cause does.
+"""A force that comes and goes: whether what acts like a cause of the ship lasts all voyage, as that does.
 
 Ice that is met now and then takes speed as fouling does, and a propeller that draws air as a worn one does.
-Where a force comes and goes faster than a ship answers, its mean looks like an effect that lasts, and the
-rest like a rough day. So the two are held against each other: the effect and a fast part of the noise model
-as these voyages show it (`settle` in case.py), and that part as on the reference voyages, beside as much of
-the effect's own force, there or not from moment to moment. On a rough day the noise does not follow it."""
+Where a force comes and goes faster than a ship answers, its mean looks like a cause that lasts, and the rest
+like a rough day. So the two are held against each other: the cause and a fast part of the noise model, as
+these voyages show it (`settle` in case.py) or as on the reference voyages; and the latter, with as much of
+the cause's own force beside it, there or not from moment to moment. On a rough day the noise does not follow
+the force. (What pulls or pushes from outside need not be steady: of a tow nothing is asked.)"""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,39 +20,40 @@ from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import accelerations
 from twin.study.reference.evidence import posterior
 
-SHARES = (0.5, 0.7, 1.0, 1.4)  # of the causes' mean force, that may come and go
+SHARES = (0.5, 0.7, 1.0, 1.4)  # of the mean force, that may come and go
 
 
 def comes_and_goes(case: Case, found: Found) -> float:
-    """How probable it is [1] that the force of this hypothesis' causes comes and goes, and has no name,
-    rather than lasts on a day as rough as these voyages show; 0 where no cause exerts a force."""
+    """How probable it is [1] that the force of this hypothesis' causes that belong to the ship comes and
+    goes, and has no name, rather than lasts on a day as rough as these voyages show; 0 without such a
+    force."""
     gain = log_bayes_factor(case, found)
     return 0.0 if gain is None else float(expit(gain + np.log(ODDS_UNNAMED / ODDS)))
 
 
 def log_bayes_factor(case: Case, found: Found) -> float | None:
     """How much likelier the voyages are when that force comes and goes than when it lasts, on a day that is
-    rough or as the references were [log Bayes factor]; None where no cause exerts one."""
+    rough or as the references were [log Bayes factor]; None where there is no such force."""
     chosen = found.hypothesis.effects
-    if not case.causes(chosen):
+    own = {name for name in chosen if case.catalogue[name].belongs_to == "ship"}
+    if not own:
         return None
     lines, at = standing(case, found)
-    forces = [_of_causes(case, line) for line in lines]
+    forces = [_of(case, own, line) for line in lines]
     if not any(map(np.any, forces)):
         return None
     (rough,) = case.scenarios([found.hypothesis.scenario], found.doubt)
     calm = replace(rough, white=case.white)
 
-    def evidence(noise_model: NoiseModel, share: float) -> float:
+    def evidence(share: float, noise_models: Sequence[NoiseModel]) -> float:
         fitful = [replace(line, fitful=share * f) for line, f in zip(lines, forces, strict=True)]
-        return posterior(case.reduced(fitful, [noise_model], at)[0], chosen).log_evidence
+        return max(posterior(r, chosen).log_evidence for r in case.reduced(fitful, noise_models, at))
 
-    return max(evidence(calm, share) for share in SHARES) - max(evidence(n, 0.0) for n in (rough, calm))
+    return max(evidence(share, (calm,)) for share in SHARES) - evidence(0.0, (rough, calm))
 
 
-def _of_causes(case: Case, line: Linear) -> np.ndarray:
-    """(N, 3) accelerations, unsigned [m/s2, m/s2, rad/s2], that the causes give beside the day's weather and
-    what comes and goes in any case."""
-    others = (e for e in line.model.effects if type(e).__name__ in case.weather or e.irregular)
+def _of(case: Case, own: set[str], line: Linear) -> np.ndarray:
+    """(N, 3) accelerations, unsigned [m/s2, m/s2, rad/s2], that these effects give beside the others."""
+    others = (effect for effect in line.model.effects if type(effect).__name__ not in own)
     without = case.model.but(*others)
     return np.abs(accelerations(line.track, line.model) - accelerations(line.track, without))

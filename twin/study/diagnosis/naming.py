@@ -84,9 +84,9 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
     ),
     CauseRule(
         FITFUL,
-        lambda f, c: c.belongs_to != "instrument" and f.comes_and_goes >= criteria.CERTAIN,
-        "it belongs to no instrument, and with a probability of "
-        f"{percent(criteria.CERTAIN)} or more the force of the explanation comes and goes",
+        lambda f, c: c.belongs_to == "ship" and f.comes_and_goes >= criteria.CERTAIN,
+        "it belongs to the ship, and with a probability of "
+        f"{percent(criteria.CERTAIN)} or more the force of such causes of the explanation comes and goes",
     ),
 )
 SECOND_NOT_SURE = "second_not_sure"  # of what might be named were it the only one
