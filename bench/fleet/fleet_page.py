@@ -72,6 +72,11 @@ FIGURES: dict[
         lambda r: bool(answer_score.causes(r["missing"])),
     ),
     "two causes, both named": (">= 85 %", lambda r: r["kind"] == "pair", answer_score.right),
+    "two causes, both named, where their oracle gains 10 %": (
+        "",
+        lambda r: r["kind"] == "pair" and answer_score.gains(r),
+        answer_score.right,
+    ),
     "the same where each of the two gains 10 %, the other known": (
         "",
         lambda r: r["kind"] == "pair" and answer_score.each_gains(r),
@@ -157,7 +162,8 @@ def _figures(rows: Sequence[Row]) -> list[str]:
     near = [there for r in rows for p, there in answer_score.answered_posteriors(r) if 0.85 <= p < 0.95]
     held = [inside for r in rows for _, inside in answer_score.intervals(r)]
     now = figures([decided(r) for r in rows])
-    body: list[tuple[object, ...]] = [(n, FIGURES[n][0], s, now[n]) for n, s in figures(rows).items()]
+    then = {n: s for n, s in figures(rows).items() if s.n}
+    body: list[tuple[object, ...]] = [(n, FIGURES[n][0], s, now[n]) for n, s in then.items()]
     body.append(("causes with a posterior of 0.85 to 0.95 that are there", "85 to 95 %", share(near), ""))
     body.append(("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", share(held), ""))
     text = (

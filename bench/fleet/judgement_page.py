@@ -50,7 +50,8 @@ def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
     first, second, third, again = (of_batch(rows, asked) for asked in ("first", "blind", "third", "again"))
     batches = (first, second, third, [decided(r) for r in every])
     each = [figures(batch) for batch in batches]
-    body = [(name, FIGURES[name][0], *(of[name] for of in each)) for name in FIGURES]
+    measured = [name for name in FIGURES if each[-1][name].n]
+    body = [(name, FIGURES[name][0], *(of[name] for of in each)) for name in measured]
     for name, goal, of in (
         ("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", _intervals),
         ("causes with a posterior of 0.95 or more that are there", "", _sure),
