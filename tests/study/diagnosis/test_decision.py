@@ -141,6 +141,17 @@ def test_a_force_that_comes_and_goes_is_no_cause_that_lasts(changes, verdict, re
     assert (answer.not_named.get("RudderWear") == "comes_and_goes") == (not missing)
 
 
+def test_one_of_rivals_that_comes_and_goes_has_its_reason_and_its_sentence():
+    """Test: a cause of 60 %, or one that cannot be told from it of 97 %; and a likelier one that is not named.
+    Expected: the sentence is about the one that comes and goes."""
+    rival, other = cause("RudderWear", probability=0.6, with_rivals=0.97), cause("Loading", error_gain=0.0)
+    answer = decide(facts(other, rival, comes_and_goes=0.95))
+    assert answer.reason == "comes_and_goes" and answer.not_named["RudderWear"] == "comes_and_goes"
+    candidates = [{"effect": name, "says": f"{name} says."} for name in ("Loading", "RudderWear")]
+    said = answer.sentence({"candidates": candidates, "answer": {"not_named": answer.not_named}})
+    assert "resembles RudderWear, which would last: RudderWear says." in said
+
+
 def test_an_instrument_is_named_beside_a_force_that_comes_and_goes():
     bias = cause("HeadingBias", belongs_to="instrument")
     answer = decide(facts(cause("RudderWear"), bias, comes_and_goes=0.95))

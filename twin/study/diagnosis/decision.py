@@ -221,10 +221,11 @@ def decide(f: Facts) -> Decision:
     """The first rule whose condition holds."""
     rule = next(r for r in RULES if r.condition(f))
     missing = (*named(f), *weather_named(f)) if rule.verdict == "missing" else ()
+    why = {c.effect: why_not(f, c) for c in f.causes if c.effect not in missing}
     others = {
-        c.effect: why_not(f, c) or SECOND_NOT_SURE
+        c.effect: why[c.effect] or SECOND_NOT_SURE
         for c in f.causes
-        if c.effect not in missing and c.probability >= criteria.SURE
+        if c.effect in why and (c.probability >= criteria.SURE or why[c.effect] == FITFUL)
     }
     more = rule.verdict == "missing" and f.left.error is not None and f.left.error > criteria.NEARLY
     return Decision(rule.verdict, rule.reason, missing, others, more, rule.sentence)

@@ -20,7 +20,8 @@ from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import accelerations
 from twin.study.reference.evidence import posterior
 
-SHARES = (0.5, 0.7, 1.0, 1.4)  # of the mean force, that may come and go
+# of the mean force, that may come and go [1]: a grid by half octaves, the likeliest counts; not fitted
+SHARES = (0.5, 0.7, 1.0, 1.4)
 
 
 def comes_and_goes(case: Case, found: Found) -> float:
