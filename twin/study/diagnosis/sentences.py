@@ -76,10 +76,12 @@ def pushed(result: Result) -> str:
 def comes_and_goes(result: Result) -> str:
     """Something is missing that does not act all the time."""
     fitful = [name for name, why in result["answer"]["not_named"].items() if why == "comes_and_goes"]
-    like = next(c for c in result["candidates"] if c["effect"] in fitful)
+    says = [
+        f"{c['effect']}, which would last: {c['says']}" for c in result["candidates"] if c["effect"] in fitful
+    ]
     return (
         "Something is missing that comes and goes, and is not in the catalogue of effects. While it acts it "
-        f"resembles {like['effect']}, which would last: {like['says']}"
+        f"resembles {(says or fitful)[0]}"
     )
 
 
