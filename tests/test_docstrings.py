@@ -7,21 +7,26 @@ from tests.sources import ROOT, sources
 
 ROOMS = ("twin.physics", "twin.live", "twin.recording", "twin.study", "twin.report", "twin.api", "export")
 FILES = [path.relative_to(ROOT).as_posix() for room in ROOMS for path in sources(room)]
-HOUSE = House(
-    {
-        path.relative_to(ROOT).as_posix(): path.read_text()
-        for room in ("twin", "export")
-        for path in sources(room)
-    }
-)
+
+
+@pytest.fixture(scope="module")
+def house():
+    """All that the inner rooms may be cases of."""
+    return House(
+        {
+            path.relative_to(ROOT).as_posix(): path.read_text()
+            for room in ("twin", "export")
+            for path in sources(room)
+        }
+    )
 
 
 @pytest.mark.parametrize("where", FILES)
-def test_a_public_function_says_what_it_takes_gives_and_raises(where):
+def test_a_public_function_says_what_it_takes_gives_and_raises(where, house):
     """Test: every public function, and method of a public class. Expected: a docstring (a case of another
     class may leave it to that one); where it takes or gives arrays, a shape and a unit; where its body raises
     an error of the twin, that error's name."""
-    left_out = {asked.where: list(owed(asked, HOUSE.errors)) for asked in HOUSE.asked(where)}
+    left_out = {asked.where: list(owed(asked, house.errors)) for asked in house.asked(where)}
     assert not {name: words for name, words in left_out.items() if words}
 
 
