@@ -17,6 +17,7 @@ from twin.recording.units import factor
 
 PARTS = re.compile(r"\d+(?:[.,]\d+)?")
 NEGATIVE = frozenset("SWsw-")
+ROUNDING_DEG = 1e-9  # of a heading: a step of Newton's that is no more was the last
 PLAIN_UNITS = (None, "ddmm", "dms", "quaternion", "quaternion_enu")
 
 
@@ -117,21 +118,19 @@ def degrees_of(text: str) -> float:
     return -size if south else size
 
 
-WAVES = ((np.sin, 1), (np.cos, 1), (np.sin, 2), (np.cos, 2))  # of B, C, D and E
-
-
 def without_deviation(shown: np.ndarray, deviation: tuple[float, ...]) -> np.ndarray:
     """The true heading [deg] from what the compass shows: shown = true + A + B sin + C cos + D sin 2 + E
     cos 2 (true). Both (N,)."""
-    a, *waves = (*deviation, *(0.0,) * (5 - len(deviation)))
-    forms = [(k, wave, turns) for k, (wave, turns) in zip(waves, WAVES, strict=True) if k]
+    a, b, c, d, e = (*deviation, *(0.0,) * (5 - len(deviation)))
     true = shown - a
-    for _ in range(20):  # a contraction while the coefficients are below a radian
-        x, off, before = np.radians(true), a, true
-        for k, wave, turns in forms:
-            off = off + k * wave(turns * x)
-        true = shown - off
-        if np.array_equal(true, before, equal_nan=True):
+    for _ in range(20):  # Newton's steps, while the coefficients are below a radian
+        sin, cos = np.sin(np.radians(true)), np.cos(np.radians(true))
+        sin2, cos2 = 2.0 * sin * cos, 1.0 - 2.0 * sin * sin
+        off = a + b * sin + c * cos + d * sin2 + e * cos2
+        slope = np.radians(b * cos - c * sin + 2.0 * (d * cos2 - e * sin2))
+        more = (shown - true - off) / np.maximum(1.0 + slope, 0.5)
+        true = true + more
+        if not np.any(np.abs(more) > ROUNDING_DEG):
             break
     return true
 

@@ -18,7 +18,7 @@ from twin.physics.actuators import Actuator
 from twin.physics.actuators.actuator_channels import DRIVES
 from twin.physics.ship import Ship
 from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.checks.voyage_view import RunningSum, VoyageView
 from twin.recording.checks.wirings import RIGHT, OrderArrays, Wiring, stop, wirings
 from twin.recording.unknown_controls import CONTROLS, of_ship
 
@@ -33,6 +33,8 @@ LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded
 PROOF, HINT = (0.15, 0.6), (0.1, 0.75)
 RIVAL = 5.0  # and to the next that is not the same, or needs fewer mistakes
 ALIKE = 0.02  # share of the force by which two wirings that mean the same may differ
+
+Windows = tuple[np.ndarray, np.ndarray]  # first and last rows
 
 
 @dataclass(frozen=True)
@@ -123,12 +125,22 @@ def best_window(view: VoyageView, ship: Ship) -> list[TriedWiring]:
     """All wirings, over windows of the length at which one of them explains most; none where nothing
     tells."""
     motion = np.array([view.velocity.real, view.velocity.imag, view.si("yaw_rate_degps")])
-    columns = [(w, _columns(view, ship, motion, w)) for w in wirings(ship.actuators)]
     step = max(view.step_s, STEP_S)
-    seconds = [k * step for k in LENGTHS if k * step * LEAST_WINDOWS < view.voyage.duration_s]
-    found = [[_tried(view, motion, w, c, s) for w, c in columns] for s in seconds]
-    clear = [ts for ts in found if max(t.total for t in ts) > LEAD]
+    lengths = [k * step for k in LENGTHS if k * step * LEAST_WINDOWS < view.voyage.duration_s]
+    windows, hull = [view.windows(seconds) for seconds in lengths], _hull(view, motion)
+    each = [
+        _tried(view, motion, hull, w, _columns(view, ship, motion, w), windows)
+        for w in wirings(ship.actuators)
+    ]
+    clear = [ts for ts in map(list, zip(*each, strict=True)) if max(t.total for t in ts) > LEAD]
     return max(clear, key=lambda ts: max(t.total for t in ts), default=[])
+
+
+def _hull(view: VoyageView, motion: np.ndarray) -> list[list[RunningSum]]:
+    """For surge, sway and yaw what the hull's own motion may do to it."""
+    u, v, r = motion
+    hull = ((v * r, u, abs(u) * u), (u * r, v, abs(v) * v, r), (u * v, r, abs(r) * r, abs(u) * r, v))
+    return [[RunningSum.of(x, view.step_s) for x in of_axis] for of_axis in hull]
 
 
 def _columns(view: VoyageView, ship: Ship, motion: np.ndarray, wiring: Wiring) -> np.ndarray:
@@ -154,24 +166,37 @@ def _ahead(a: Actuator, told: OrderArrays) -> np.ndarray:
 
 
 def _tried(
-    view: VoyageView, motion: np.ndarray, wiring: Wiring, columns: np.ndarray, seconds: float
-) -> TriedWiring:
+    view: VoyageView,
+    motion: np.ndarray,
+    hull: list[list[RunningSum]],
+    wiring: Wiring,
+    columns: np.ndarray,
+    windows: list[Windows],
+) -> list[TriedWiring]:
+    """How well it explains the motion over windows of each of these lengths."""
+    pushes = [[RunningSum.of(x, view.step_s) for x in of_axis.T] for of_axis in columns]
+    out = []
+    for first, last in windows:
+        axes: dict[int, np.ndarray] = {}
+        for i in range(3):
+            change = motion[i][last] - motion[i][first]
+            push = np.stack([x.over(first, last) for x in pushes[i]], axis=1)
+            others = np.stack([*(x.over(first, last) for x in hull[i]), np.ones(first.size)], axis=1)
+            ok = np.isfinite(change) & np.isfinite(push).all(1) & np.isfinite(others).all(1)
+            if np.count_nonzero(ok) / 2 < LEAST_WINDOWS or not np.ptp(push[ok], axis=0).any():
+                continue
+            both = _beside(others[ok], np.column_stack([change, push])[ok])
+            if (size := float(np.linalg.norm(both[:, 0]))) > 0.0:
+                axes[i] = both / size
+        out.append(TriedWiring(wiring, columns, *_explained(axes)))
+    return out
+
+
+def _explained(axes: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """(3,) log likelihood that thrust gains, and (3,) the share that it explains, of the motion beside thrust
+    in each axis that tells anything, (W, 1 + C) of one size."""
     from scipy.optimize import nnls  # heavy, and only ships with actuators are asked
 
-    first, last = view.windows(seconds)
-    u, v, r = motion
-    hull = ((v * r, u, abs(u) * u), (u * r, v, abs(v) * v, r), (u * v, r, abs(r) * r, abs(u) * r, v))
-    axes: dict[int, np.ndarray] = {}
-    for i in range(3):
-        change = motion[i][last] - motion[i][first]
-        push = np.stack([view.summed(columns[i, :, k], first, last) for k in range(columns.shape[2])], axis=1)
-        others = np.stack([*(view.summed(x, first, last) for x in hull[i]), np.ones(first.size)], axis=1)
-        ok = np.isfinite(change) & np.isfinite(push).all(1) & np.isfinite(others).all(1)
-        if np.count_nonzero(ok) / 2 < LEAST_WINDOWS or not np.ptp(push[ok], axis=0).any():
-            continue
-        both = _beside(others[ok], np.column_stack([change, push])[ok])
-        if (size := float(np.linalg.norm(both[:, 0]))) > 0.0:
-            axes[i] = both / size
     gain, share = np.zeros(3), np.full(3, np.nan)
     if axes:
         of_all = np.concatenate(list(axes.values()))
@@ -180,7 +205,7 @@ def _tried(
         left = float(np.sum((both[:, 0] - both[:, 1:] @ strengths) ** 2))
         share[i] = max(0.0, 1.0 - left)
         gain[i] = -0.25 * len(both) * np.log(max(left, 1e-12)) if abs(1.0 - left) > LEAST_SHARE else 0.0
-    return TriedWiring(wiring, columns, gain, share)
+    return gain, share
 
 
 def _beside(others: np.ndarray, columns: np.ndarray) -> np.ndarray:

@@ -202,7 +202,8 @@ def curve_of(
     on the view's even grid; `form`: which columns of `curve` it has."""
     odd, true, full = w.change(psi) - w.summed(r), psi, np.zeros(4)
     for _ in range(5):
-        columns = [w.change(curve(true)[i]) for i in form]
+        waves = curve(true)
+        columns = [w.change(waves[i]) for i in form]
         found, error, _ = fit([np.ones(odd.size), *columns], odd)
         if not np.isfinite(found).all() or np.any(np.abs(found[1:]) > MOST_DEVIATION):
             return None

@@ -14,6 +14,32 @@ LEAST_WAY_MPS = 0.1  # less is a mooring's swing
 
 
 @dataclass(frozen=True)
+class RunningSum:
+    """The integral of a rate (trapezes) from the first row to each, as if what is missing were none of it;
+    how many steps were missing until there, None where none is. Both (N,)."""
+
+    total: np.ndarray
+    missing: np.ndarray | None
+
+    @classmethod
+    def of(cls, rate: np.ndarray, step_s: float) -> "RunningSum":
+        """`rate` (N,), with samples `step_s` apart; in the unit of the rate times s."""
+        steps = (rate[1:] + rate[:-1]) / 2.0 * step_s
+        there = np.isfinite(steps)
+        if there.all():
+            return cls(_from_none(steps), None)
+        return cls(_from_none(np.where(there, steps, 0.0)), _from_none(~there))
+
+    def over(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """(W,) the integral over each window, in its unit; NaN where a sample is missing. `first`, `last`
+        (W,) index."""
+        out = self.total[last] - self.total[first]
+        if self.missing is not None:
+            out[self.missing[last] != self.missing[first]] = np.nan
+        return out
+
+
+@dataclass(frozen=True)
 class VoyageView:
     """A voyage and, if known, its ship."""
 
@@ -92,10 +118,13 @@ class VoyageView:
     def summed(self, rate: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(W,) integral of a rate over each window (trapezes); NaN where a sample is missing. `rate` (N,);
         `first`, `last` (W,); in the unit of the rate times s."""
-        steps = (rate[1:] + rate[:-1]) / 2.0 * self.step_s
-        missing = np.r_[0, np.cumsum(~np.isfinite(steps))]
-        total = np.r_[0.0, np.cumsum(np.where(np.isfinite(steps), steps, 0.0))]
-        return np.where(missing[last] == missing[first], total[last] - total[first], np.nan)
+        return RunningSum.of(rate, self.step_s).over(first, last)
+
+
+def _from_none(steps: np.ndarray) -> np.ndarray:
+    """(N + 1,) how much they are together before each of them and after the last."""
+    total = np.cumsum(steps)
+    return np.concatenate([np.zeros(1, total.dtype), total])
 
 
 def fit(columns: list[np.ndarray], target: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
