@@ -51,6 +51,12 @@ FILES = sorted(
 )
 
 
+@pytest.fixture(scope="module")
+def trees():
+    """Every file as it is parsed, once."""
+    return {path: ast.parse(path.read_text()) for path in FILES}
+
+
 def names(tree):
     """Every name that is given in a file."""
     for node in ast.walk(tree):
@@ -70,8 +76,8 @@ def texts(tree):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_no_file_gives_a_private_name_or_says_a_private_word(path):
-    tree = ast.parse(path.read_text())
+def test_no_file_gives_a_private_name_or_says_a_private_word(path, trees):
+    tree = trees[path]
     given = {part for name in (*names(tree), path.stem) for part in re.split(r"_+", name.lower())}
     assert not given & NAMES
     assert not [found.group() for text in texts(tree) for found in READ.finditer(text)]
@@ -95,12 +101,12 @@ def at_top(tree):
             yield from names(node)
 
 
-def test_no_module_gives_a_name_that_has_had_several_meanings():
+def test_no_module_gives_a_name_that_has_had_several_meanings(trees):
     """Expected: what a line, an order, a noise model, a result or a limit is says its name, not that somebody
     told, asked or judged it; each constant says of what it is the limit."""
     given = {}
-    for path in FILES:
-        for name in (path.stem, *at_top(ast.parse(path.read_text()))):
+    for path, tree in trees.items():
+        for name in (path.stem, *at_top(tree)):
             words = {word.lower() for word in re.findall(r"[A-Z][a-z]+|[a-z]+|[A-Z]+", name)}
             if words & GIVEN_ONCE:
                 given.setdefault(name, []).append(str(path.relative_to(ROOT)))
@@ -120,19 +126,19 @@ def of_classes(tree):
             yield node.attr
 
 
-def test_no_field_and_no_method_says_told_or_floor():
+def test_no_field_and_no_method_says_told_or_floor(trees):
     """Expected: a field is a noise model, an expected error, an allowance, orders, information; a record is put
     down `as_json`. (Keys of JSON and of ship files that are read outside stay: they are no names of fields.)"""
-    given = {str(path.relative_to(ROOT)): set(of_classes(ast.parse(path.read_text()))) for path in FILES}
+    given = {str(path.relative_to(ROOT)): set(of_classes(tree)) for path, tree in trees.items()}
     assert {path: names & FIELDS for path, names in given.items() if names & FIELDS} == {}
 
 
-def test_a_class_has_its_name_alone():
+def test_a_class_has_its_name_alone(trees):
     """Expected: within twin, export, bench and deploy no class name twice, but for Force, the kind of effect,
     and Force, the vector it returns: plug-ins import both."""
     places = {}
-    for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text())):
+    for path, tree in trees.items():
+        for node in ast.walk(tree):
             if isinstance(node, ast.ClassDef):
                 places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
     assert not {name: where for name, where in places.items() if len(where) > 1 and name != "Force"}
