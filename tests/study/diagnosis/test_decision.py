@@ -281,6 +281,15 @@ def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
     )
 
 
+def test_a_cause_that_was_never_estimated_is_not_in_the_sentence():
+    """Test: a cause is likely, but only with others, none of which was estimated, so that no candidate has
+    its numbers. Expected: the answer has its reason, and the sentence says that the voyages cannot tell."""
+    answer = decide(facts(cause(probability=0.81, in_explanation=False)))
+    assert answer.not_named == {"HullFouling": "not_in_explanation"}
+    said = answer.sentence({"candidates": [], "answer": {"not_named": answer.not_named}})
+    assert said == "Undecided: these voyages cannot tell what, if anything, is missing."
+
+
 def test_a_cause_is_unchanged_where_healthy_voyages_of_the_ship_show_as_much():
     """Test: a clear cause, and how many reference voyages a single cause explains as much. Expected: named where
     none reaches it or nobody knows, and not from a quarter of them on."""

@@ -174,6 +174,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
     best set that holds them."""
     case, weighed, found, considered = told.case, told.weighed, told.found, told.considered
     sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
+    sets = sets or [s for s in found if name in s]  # where it stands at a size that cannot be
     sets.sort(key=lambda s: name not in told.decision.missing or s != told.shown)
     if not sets:
         return {}

@@ -140,11 +140,14 @@ def pushed_in_weather(result: Result) -> str:
 
 
 def not_named(result: Result) -> str:
-    """Why the likeliest effect is not named."""
-    c = next(c for c in result["candidates"] if c["effect"] in result["answer"]["not_named"])
+    """Why the likeliest effect is not named, where it was estimated."""
+    reasons = result["answer"]["not_named"]
+    c = next((c for c in result["candidates"] if c["effect"] in reasons), None)
+    if c is None:
+        return cannot_tell(result)
     return (
         f"Undecided: the readings ask for {likely(result, c['effect'])}, but "
-        f"{why_not(c, result['answer']['not_named'][c['effect']])}."
+        f"{why_not(c, reasons[c['effect']])}."
     )
 
 
