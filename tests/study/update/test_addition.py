@@ -20,9 +20,10 @@ from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
-from twin.study.update.added import notes, sailing_time
+from twin.study.update.added import FARTHER, notes, sailing_time, verdict
 from twin.study.update.adding import Number, fitted
 from twin.study.update.addition import add
+from twin.study.update.fall import Fall
 from twin.study.update.proof import HeldOutProof, block_interval, prove
 
 TIME_S = 320.0 / 7.97388  # L/U_0 of the bundled tanker
@@ -198,6 +199,17 @@ def test_what_was_not_proved_says_how_much_more_would_do():
         HeldOutProof(-1.0, -3.0, 1.0, (), 600.0, False).more_s is None
         and HeldOutProof(9.0, 4.0, 14.0, (), 600.0, False).more_s is None
     )
+
+
+@pytest.mark.parametrize("after", [19.0, 26.7])
+def test_a_proof_beside_an_error_in_metres_that_grows_says_what_the_proof_is_made_of(after):
+    """A compass bias is seen in the readings, while chance moves where a few windows end."""
+    said = verdict(
+        {"added": ["HeadingBias"], "horizons": []},
+        HeldOutProof(18.7, 8.0, 29.4, (), 1200.0, False),
+        Fall("position", "m", 21.3, after, -9.0, 12.0, 4, 120.0),
+    )
+    assert said.endswith(FARTHER) == (after > 21.3)
 
 
 def test_every_third_may_be_judged_by_the_others_and_the_history_says_so(sailed, make, kvlcc2):

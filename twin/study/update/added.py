@@ -19,6 +19,10 @@ from twin.study.update.fall import Fall
 from twin.study.update.proof import HeldOutProof
 
 FEW = 4  # numbers of an effect that are shown beside what was asked for
+FARTHER = (
+    "That error alone is no smaller on these voyages, and proves nothing by itself: the proof is made of all "
+    "that was measured, at every horizon."
+)
 FOREVER_S = 100.0 * 3600.0  # of sailing, beyond which no more of it is worth asking for
 
 
@@ -29,7 +33,8 @@ def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
         return f"{names}: fitted to zero on these voyages, so this ship file predicts as it did before."
     how = f"{_ratio(proof)}; {_metres(result, shown)}"
     if proof.proved:
-        return f"With {names} measurements not used to fit it are likelier: {how}."
+        farther = f" {FARTHER}" if shown.after > shown.before else ""
+        return f"With {names} measurements not used to fit it are likelier: {how}.{farther}"
     return f"With {names} measurements not used to fit it are not clearly likelier: {how}."
 
 

@@ -223,7 +223,7 @@ def _numbers(case: Case, found: Found) -> list[Number]:
                 low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
                 if p:
                     low, high = float(p["low95"]), float(p["high95"])  # type: ignore[arg-type]
-                gained = 1.0 - min(sd / u.sd, 1.0) ** 2
+                gained = 1.0 - min(float(found.posterior.covariance[i, i]), 1.0)  # beside its prior
                 out.append(
                     Number(
                         name,
