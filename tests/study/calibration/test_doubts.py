@@ -15,6 +15,7 @@ def test_only_faults_are_said_to_be_hard_to_see():
     Expected: the effect alone is told: the others are no faults that could be seen."""
     inner = {"core.N_vdot": 1.6, "form.X_u4": 1.6, "late.log": 1.6, "sea.helm": 1.6, "rough.yaw": 1.6}
     assert told(inner) == []
+    assert told({"Current.north": 1.6}) == []  # a stream is another one every day
     (one,) = told(inner | {"SteeringLag.delay": 1.6})
     assert one.startswith("SteeringLag.delay (1.6 times its usual width) differs so much")
     assert "sea." not in one

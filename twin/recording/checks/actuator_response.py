@@ -32,6 +32,7 @@ LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded
 # that it may leave of what is not explained as recorded; to be believed, and to be told
 PROOF, HINT = (0.15, 0.6), (0.1, 0.75)
 RIVAL = 5.0  # and to the next that is not the same, or needs fewer mistakes
+AS_ONE = 'column = ["PORT", "STARBOARD"], factors = [0.5, 0.5].'
 ALIKE = 0.02  # share of the force by which two wirings that mean the same may differ
 
 Windows = tuple[np.ndarray, np.ndarray]  # first and last rows
@@ -81,10 +82,12 @@ def driven_otherwise(view: VoyageView, ship: Ship) -> str:
     there = [c for c in (*CONTROLS, *of_actuators(v.columns)) if v.has(c)]
     if not missing or not there or not (ship.actuators or of_actuators(there)):
         return ""
+    mean = "" if ship.actuators else " Two rudders or shafts that go together are one channel: " + AS_ONE
     return (
         f"not recorded: {', '.join(missing)}; without that the voyage cannot be used with the file of "
         f"{ship.name}. Recorded: {', '.join(there)}. Give each channel that is missing a line in the map "
         "(--suggest-map proposes them), or leave out of the ship file what is not recorded."
+        f"{mean}"
     )
 
 

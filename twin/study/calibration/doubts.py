@@ -6,7 +6,7 @@ from typing import Any
 
 from twin.num import num
 from twin.physics.actuators import NUMBERS
-from twin.physics.effects import of_role
+from twin.physics.effects import find, of_role
 from twin.physics.ship import DERIVATIVES
 from twin.study.estimation.columns import NO_MODEL
 
@@ -120,11 +120,16 @@ def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
+def _lasts(owner: str) -> bool:
+    """Whether it should be alike on these voyages: no part of the core, and no weather."""
+    return owner not in ("core", *NO_MODEL) and not find(owner).is_weather()
+
+
 def _blind(between: Mapping[str, float]) -> list[str]:
     large = {
         label: widths
         for label, widths in between.items()
-        if widths >= BLIND and label.partition(".")[0] not in ("core", *NO_MODEL)
+        if widths >= BLIND and _lasts(label.rpartition(".")[0])
     }
     if not large:
         return []

@@ -107,7 +107,9 @@ def _off(entries: list[dict[str, Any]]) -> list[str]:
 def _checks(checks: list[dict[str, Any]]) -> list[str]:
     bad = [c for c in checks if not c["ok"]]
     if not bad:
-        return ["", f"data checks: all {len(checks)} pass"]
+        blind = sum(not c["told"] for c in checks)
+        cannot = f", {blind} cannot tell" if blind else ""
+        return ["", f"data checks: {len(checks) - blind} pass{cannot}"]
     return ["", "data checks"] + [
         f"  look  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['check']}: {c['text']}" for c in bad
     ]
