@@ -1,13 +1,27 @@
 """What a calibration says is doubtful."""
 
+import pytest
+
 from twin.study.calibration.doubts import doubts
+
+FELL = {"horizon_s": 60.0, "windows": 9, "position_m": 1.0, "before_m": 2.0}
+FELL |= {"heading_deg": 1.0, "before_deg": 2.0}
 
 
 def told(between):
     """The sentences about numbers that differ by so many prior widths from voyage to voyage."""
-    fell = {"horizon_s": 60.0, "windows": 9, "position_m": 1.0, "before_m": 2.0}
-    fell |= {"heading_deg": 1.0, "before_deg": 2.0}
-    return doubts([], [fell], (0.03, 0.03, 0.03), between=between)
+    return doubts([], [FELL], (0.03, 0.03, 0.03), between=between)
+
+
+@pytest.mark.parametrize(("lift", "lines"), [(-1.45e-5, 1), (-0.12, 0)])
+def test_a_hull_without_lift_is_doubtful(lift, lines):
+    """Found on a catamaran that its owner had simulated with a lift of -0.42."""
+    lifts = {"name": "Y_uv", "value": lift, "sd": 0.0098, "before": -0.3364, "excited": True}
+    said = doubts([lifts], [FELL], (0.03, 0.03, 0.03))
+    assert len(said) == lines
+    assert all(
+        s.startswith("Y_uv is as good as none (-0.34 by") and "drift pushes it aside" in s for s in said
+    )
 
 
 def test_only_faults_are_said_to_be_hard_to_see():

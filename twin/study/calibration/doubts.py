@@ -15,6 +15,8 @@ LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
 BLIND = 1.0
 STRAIGHTENS = {"gamma_v": 1.0, "gamma_r": -1.0}  # the sign that a hull gives them
+ON_EVERY_HULL = {"Y_uv": "drift pushes it aside", "N_ur": "its own turning is damped"}  # by its lift
+NIL = 0.01  # of what its particulars give, below which a derivative is as good as none
 WRONG_SIGN_SE = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
 
@@ -31,6 +33,7 @@ def doubts(
     return [
         *_stopped(derivatives),
         *_backwards(derivatives),
+        *_without_lift(derivatives),
         *_no_better(held_out),
         *_coarse(share),
         *_ordered(usual),
@@ -69,6 +72,17 @@ def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
         f"{', '.join(wrong)}: the stern's own drift would help its rudder, as on no ship. Is rudder, yaw "
         "rate or sway of the other sign, or late? "
         "twin compare, and the checks of twin import"
+    ]
+
+
+def _without_lift(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What the lift of any hull does, and of which nothing is left."""
+    return [
+        f"{d['name']} is as good as none ({num(d['before'], 2)} by the particulars), and of every hull "
+        f"{ON_EVERY_HULL[d['name']]}: wind, stream or another derivative stands for it here. Give reference "
+        "voyages with turns both ways on other courses, and with the wind recorded"
+        for d in derivatives
+        if d["name"] in ON_EVERY_HULL and d["excited"] and abs(d["value"]) < NIL * abs(d["before"])
     ]
 
 
