@@ -59,7 +59,7 @@ def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
         body.append((name, goal, *(of(batch) for batch in (first, second, third, every))))
     text = (
         f"All {len(every)} voyages with the latest of their answers, as the table of today decides them: "
-        f"{len(again)} were asked again, most of them when something was mended that could touch them. "
+        f"{len(again)} were asked again (when, and why: below). "
         f"Beside them each batch as it was answered first: {len(first)} voyages, to which three thresholds "
         f"were fitted afterwards; {len(second)} further voyages of the same ships, asked before anything was "
         f"fitted to them; and {len(third)} of new ships, of which no fit had seen any. Nine voyages stand in "

@@ -41,16 +41,16 @@ FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a 
     "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
 OF_CAUSE = {  # of the explanation
-    "constant": -4.26,
-    "log_odds": 0.43,
-    "clearness": 1.04,
-    "left_little": 0.31,
-    "named": 1.39,
-    "of_known_form": 0.96,
+    "constant": -4.32,
+    "log_odds": 0.27,
+    "clearness": 1.2,
+    "left_little": 0.46,
+    "named": 1.23,
+    "of_known_form": 1.16,
 }
-OF_CAUSE_BESIDE = {"constant": -1.27, "log_odds": 1.16}  # the explanation does without it
-OF_NOTHING = {"constant": -1.1, "log_odds": 1.06, "unnamed": 1.28}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -0.63, "log_odds": 0.71, "verdict": 1.33}  # what is there has no name
+OF_CAUSE_BESIDE = {"constant": -1.25, "log_odds": 1.1}  # the explanation does without it
+OF_NOTHING = {"constant": -0.36, "log_odds": 1.16, "unnamed": 0.42}  # no cause of ship and instruments
+OF_UNKNOWN = {"constant": -0.98, "log_odds": 0.6, "verdict": 1.31}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
