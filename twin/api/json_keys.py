@@ -81,9 +81,7 @@ CANDIDATE = (
     ),
     *when("one is likely", TYPICAL_FORCE),
     JsonKey("error_horizon_s", "s", "how far ahead held-out parts are predicted", "one is likely"),
-    JsonKey(
-        "error_without", "m", "of the model there without a cause, the day's weather in it", "one is likely"
-    ),
+    JsonKey("error_without", "m", "open-loop error there with the day's weather alone", "one is likely"),
     JsonKey("error_with", "m", "the same with it, on parts not used to fit it", "one is likely"),
     JsonKey("error_floor", "m", "what is expected if it is the true cause", "one is likely"),
     JsonKey("together_with[]", "", "effects that stand beside it", "there are some"),
