@@ -21,7 +21,7 @@ from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
 from twin.study.update.added import FARTHER, notes, sailing_time, verdict
-from twin.study.update.adding import Number, fitted
+from twin.study.update.adding import UNTOUCHED, Number, fitted
 from twin.study.update.addition import add
 from twin.study.update.fall import Fall
 from twin.study.update.proof import HeldOutProof, block_interval, prove
@@ -252,6 +252,14 @@ def test_the_interval_of_an_added_number_is_about_that_of_the_diagnosis():
         pytest.approx(said["high95"], abs=0.02),
     )
     assert extra.value == pytest.approx(said["value"], abs=0.01)
+
+
+def test_a_number_far_beyond_the_usual_was_not_kept_near_its_prior(make, kvlcc2):
+    """Test: a screw that walks six times as hard as is usual. Expected: the voyage is said to tell it."""
+    walk = find("PropellerWalk").absent(kvlcc2).but(c_y=0.06)
+    numbers = fitted(kvlcc2, [find("PropellerWalk")], [track(make(walk), kvlcc2)]).numbers
+    (c_y,) = [n for n in numbers if n.name == "c_y"]
+    assert c_y.value > 0.03 and c_y.gained >= UNTOUCHED
 
 
 def test_an_effect_of_the_one_screw_is_refused_for_a_ship_with_actuators(tmp_path, capsys):

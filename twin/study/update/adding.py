@@ -32,8 +32,7 @@ from twin.study.reference.sailed import fed
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
-OFF_PRIOR = 2.0  # prior widths, from which a number was not kept near its prior
-UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
+UNTOUCHED = 0.1  # a number whose variance changed by a smaller share was not excited
 CLOSE = 3.0  # log odds behind, to first order, within which one of these is judged where it would stand
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
@@ -44,8 +43,8 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Number:
-    """One number of an effect, with its 95 % interval (inside its box) and how much of its prior's variance
-    the voyages removed."""
+    """One number of an effect, with its 95 % interval (inside its box) and the share by which the voyages
+    changed its prior's variance (wider where it is far beyond the usual)."""
 
     effect: str
     name: str
@@ -224,7 +223,7 @@ def _numbers(case: Case, found: Found) -> list[Number]:
                 low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
                 if p:
                     low, high = float(p["low95"]), float(p["high95"])  # type: ignore[arg-type]
-                gained = _gained(float(found.posterior.z[i]), float(found.posterior.covariance[i, i]))
+                gained = abs(1.0 - float(found.posterior.covariance[i, i]))
                 out.append(
                     Number(
                         name,
@@ -239,11 +238,6 @@ def _numbers(case: Case, found: Found) -> list[Number]:
                     )
                 )
     return out
-
-
-def _gained(z: float, variance: float) -> float:
-    """What the voyages took away of a number's doubt; all of one that left its prior. In prior widths."""
-    return 1.0 if abs(z) > OFF_PRIOR else 1.0 - min(variance, 1.0)
 
 
 def _at_an_end(u: Unknown, value: float) -> bool:
