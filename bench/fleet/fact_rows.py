@@ -19,14 +19,11 @@ from bench.fleet.voyage_plan import FleetCase, SailedCase, generator, plan, refe
 from twin.physics.ship import Ship as Model
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
-from twin.study.calibration.core_fit import calibrate
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.effect_diagnosis import Diagnosed, diagnose
 from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.refine import Found, refine
 from twin.study.first_model.first_estimate import OPTIONS, first_model
-from twin.study.reference.sailed import Sailed as Reference
-from twin.study.track.track import track
 
 KEPT_FACTS = (
     "verdict",
@@ -62,15 +59,17 @@ def calibrated(ship: RandomShip) -> tuple[Model, dict[str, Any]]:
     given = {name: None for name, *_ in OPTIONS} | ship.given(generator(ship, 4))
     start, _ = first_model(f"{ship.family}-{ship.seed}", given)
     sailed_before = [voyage(s) for s in references(ship)]
-    refs = [Reference(v, track(v, start), v.name) for v in sailed_before]
-    done = calibrate(refs, [(refs[-1].track, 0)], start)
+    done = twin.calibrate(start, sailed_before)
+    said = done.to_dict()
     return done.ship, {
-        "references": len(refs),
+        "references": len(sailed_before),
         "calibration_s": time.process_time() - began,
         "reference_s": sum(v.duration_s for v in sailed_before),
-        "share": done.result["floor"]["share"],
-        "left_out_scores": done.ship.notes["structural"].get("left_out_scores", []),
+        "share": said["floor"]["share"],
+        "left_out_scores": done.ship.notes["structural"].get("left_out_scores", []) if done.accepted else [],
         "knows": [type(e).__name__ for e in done.ship.effects],
+        "fitted_by": said["fitted_by"],
+        "accepted": done.accepted,
     }
 
 
