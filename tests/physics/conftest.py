@@ -75,6 +75,7 @@ def moment() -> dict[str, float]:
         "phi": 0.05,
         "u_dot": 0.01,
         "v_dot": -0.02,
+        "r_dot": 0.001,
     }
 
 

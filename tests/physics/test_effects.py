@@ -43,7 +43,7 @@ ISSUE = [
 ]
 READ = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r", "wind_to")
 # change sign in a mirror
-ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "v_dot"}
+ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "v_dot", "r_dot"}
 MIRRORED = {  # parameters that do so too
     "RudderOffset": {"offset"},
     "TowForce": {"starboard", "turning"},

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import radians
 
+import numpy as np
 import pytest
 
 from twin.physics.effects import find
@@ -61,14 +62,29 @@ def test_instruments_by_hand(ship):
 
 
 def test_a_slow_compass_by_hand(ship):
-    s = Situation(psi=radians(30), u=4.0, v=-0.5, r=0.02)
-    # 0.04 rad behind; the velocity turned by 0.06 rad
+    s = Situation(psi=radians(30), u=4.0, v=-0.5, r=0.02, r_dot=0.003)
+    # 2 (0.02 - 0.003) = 0.034 rad behind; the velocity turned by 3 (0.02 - 0.0045) = 0.0465 rad
     slow = find("HeadingLag")(lag=2.0, turned=3.0).read(s, ship)
-    assert slow.psi == pytest.approx(radians(30) - 0.04)
+    assert slow.psi == pytest.approx(radians(30) - 0.034)
     assert (slow.u, slow.v) == (
-        pytest.approx(4 * 0.9982005 + 0.5 * 0.0599640, rel=1e-6),
-        pytest.approx(-0.5 * 0.9982005 + 4 * 0.0599640, rel=1e-6),
+        pytest.approx(4 * 0.9989191 + 0.5 * 0.0464832, rel=1e-6),
+        pytest.approx(-0.5 * 0.9989191 + 4 * 0.0464832, rel=1e-6),
     )
+
+
+def test_a_slow_compass_shows_the_heading_of_then_where_a_turn_begins(ship):
+    """Test: a rate of turn that grows to 0.02 rad/s with a time constant of 8 s, a compass 2 s late, 3 to 30 s after
+    the rudder. Expected: the heading of 2 s ago to a thousandth of a radian, a tenth of what the rate of turn alone is
+    off."""
+
+    def psi(t):
+        return 0.02 * (t - 8.0 * (1.0 - np.exp(-t / 8.0)))
+
+    t = np.linspace(3.0, 30.0, 28)
+    r, r_dot = 0.02 * (1.0 - np.exp(-t / 8.0)), 0.02 / 8.0 * np.exp(-t / 8.0)
+    slow = find("HeadingLag")(lag=2.0).read(Situation(psi=psi(t), u=4.0, v=0.0, r=r, r_dot=r_dot), ship)
+    off, by_rate = slow.psi - psi(t - 2.0), psi(t) - 2.0 * r - psi(t - 2.0)
+    assert np.abs(off).max() < 1e-3 and np.all(np.abs(off) < 0.1 * np.abs(by_rate))
 
 
 def test_a_compass_with_iron_about_it_by_hand(ship):

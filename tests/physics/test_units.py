@@ -110,7 +110,7 @@ FIELDS |= dict.fromkeys(("u", "v", "u_r", "v_r", "wind_speed"), "m/s") | dict.fr
 FIELDS |= dict.fromkeys(("psi", "delta", "wind_to", "wave_to", "phi"), "rad") | dict.fromkeys(
     ("t", "T_p"), "s"
 )
-FIELDS |= dict.fromkeys(("u_dot", "v_dot"), "m/s2")
+FIELDS |= dict.fromkeys(("u_dot", "v_dot"), "m/s2") | {"r_dot": "rad/s2"}
 
 
 @pytest.fixture

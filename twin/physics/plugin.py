@@ -46,6 +46,7 @@ MOMENT = {  # a moment at sea in which every field is filled and nothing is zero
     "p": 0.01,
     "u_dot": 0.01,
     "v_dot": -0.02,
+    "r_dot": 0.001,
 }
 TRIAL_SHIP = ShipNumbers(  # a full tanker of 320 m
     "a usual ship",

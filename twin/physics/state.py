@@ -92,6 +92,7 @@ class Situation:
     # acceleration over ground in body axes [m/s2], where it was worked out: only a late sensor asks for it
     u_dot: Number = 0.0
     v_dot: Number = 0.0
+    r_dot: Number = 0.0  # and of the turning [rad/s2]
 
     @property
     def grown(self) -> Growth:

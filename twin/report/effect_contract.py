@@ -24,7 +24,7 @@ from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
 
 # change sign in a mirror
-ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "p", "v_dot"}
+ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "p", "v_dot", "r_dot"}
 SIGNS = {
     "Force": (1, -1, -1),
     "Flow": (1, -1, 1, 1, 1, 1, 1, 1),

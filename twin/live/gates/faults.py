@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Rates, Situation
 
-FIELDS = tuple(f.name for f in fields(Situation) if f.name not in ("t", "p", "u_dot", "v_dot"))
+FIELDS = tuple(f.name for f in fields(Situation) if f.name not in ("t", "p", "u_dot", "v_dot", "r_dot"))
 OWN = ("psi", "r", "wind_speed", "wind_to")  # derived, these come from what the faults were taken off already
 
 
@@ -33,9 +33,8 @@ class KnownFaults:
             return measured
         si = measured.si
         drift = e.current_body()
-        true = Situation(
-            e.x, e.y, e.psi, e.u, e.v, e.r, e.u - drift[0], e.v - drift[1], u_dot=rates.u, v_dot=rates.v
-        )
+        true = Situation(e.x, e.y, e.psi, e.u, e.v, e.r, e.u - drift[0], e.v - drift[1])
+        true.u_dot, true.v_dot, true.r_dot = rates
         for name in FIELDS[8:]:
             if name in si:
                 setattr(true, name, si[name])

@@ -1,11 +1,12 @@
 """The compass is slow: it shows the heading of `lag` seconds ago (a filtered magnetic or satellite compass, a
 slow message).
 
-    psi_m = psi - lag r
-    u_m = u cos(turned r) - v sin(turned r),   v_m = v cos(turned r) + u sin(turned r)      (over ground)
+    psi_m = psi - behind(lag),   behind(t) = t r - t^2/2 dr/dt
+    u_m = u cos(behind(turned)) - v sin(behind(turned)),   v_m = v cos(behind(turned)) + u sin(behind(turned))
+        (over ground)
 `turned` = lag where the velocity over ground is turned into body axes by this compass, and 0 where the
-receiver has an attitude of its own. First order in the lag: good while the rate of turn changes little
-within it.
+receiver has an attitude of its own. Second order in the lag: of first order alone, a rudder that is put
+over would seem to turn the ship less.
 """
 
 from dataclasses import replace
@@ -49,5 +50,6 @@ class HeadingLag(SensorFault):
     )
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
-        c, si = cos(self.turned * s.r), sin(self.turned * s.r)
-        return replace(s, psi=s.psi - self.lag * s.r, u=s.u * c - s.v * si, v=s.v * c + s.u * si)
+        behind, turned = (age * (s.r - 0.5 * age * s.r_dot) for age in (self.lag, self.turned))
+        c, si = cos(turned), sin(turned)
+        return replace(s, psi=s.psi - behind, u=s.u * c - s.v * si, v=s.v * c + s.u * si)

@@ -117,7 +117,7 @@ def _run(t: Track, model: Model, starts: np.ndarray, steps: int, nudges: np.ndar
         }
         s = Situation(**dict(zip(STATE, state, strict=True)), **inputs)
         rates = model.nu_dot(s)
-        s.u_dot, s.v_dot = rates.u, rates.v
+        s.u_dot, s.v_dot, s.r_dot = rates
         out.append(readings(s, model).reshape(len(starts), len(nudges), -1).swapaxes(1, 2))
         state = model.step(state, Situation(**inputs), t.h)
     return np.stack(out)

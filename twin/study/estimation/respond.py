@@ -30,7 +30,7 @@ def sailing(track: Track, model: Model, kept: KeptForces | None = None) -> tuple
     (N, 3) [m/s2, m/s2, rad/s2]. `kept`: what actuators gave along it."""
     s = track.situation(**steered(track, model, kept))
     nu_dot = _nu_dot(s, model)
-    s.u_dot, s.v_dot, _ = nu_dot.T
+    s.u_dot, s.v_dot, s.r_dot = nu_dot.T
     return s, nu_dot
 
 
@@ -211,7 +211,7 @@ def by_stream(track: Track, still: Model, kept: KeptForces | None = None) -> np.
 def moving(track: Track, model: Model) -> Situation:
     """What the ship does along the track, its accelerations included, were the instruments right."""
     s = track.situation()
-    s.u_dot, s.v_dot, _ = model.nu_dot(s)
+    s.u_dot, s.v_dot, s.r_dot = model.nu_dot(s)
     return s
 
 

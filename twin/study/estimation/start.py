@@ -115,8 +115,7 @@ def _read(track: Track, model: Model, state: np.ndarray, wind_to: np.ndarray | N
     """What the faulty instruments show of a ship that moves so."""
     s = track.situation(**dict(zip(STATE, state.T, strict=True)))
     s.wind_to, s.u_r, s.v_r = wind_to, s.u, s.v
-    s.u_dot = np.gradient(s.u, track.h)
-    s.v_dot = np.gradient(s.v, track.h)
+    s.u_dot, s.v_dot, s.r_dot = (np.gradient(x, track.h) for x in (s.u, s.v, s.r))
     for fault in model.faults:
         s = fault.read(replace(s), model.loaded)
     return s

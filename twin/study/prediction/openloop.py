@@ -281,5 +281,5 @@ class _Run:
         s = self._situation(k)
         s.x, s.y, s.psi, s.u, s.v, s.r = state
         rates = self.known.nu_dot(s)
-        s.u_dot, s.v_dot = rates.u, rates.v
+        s.u_dot, s.v_dot, s.r_dot = rates
         return readings(s, self.known)
