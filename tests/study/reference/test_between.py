@@ -25,7 +25,7 @@ def fleet(scatter, voyages, seed):
 @pytest.mark.parametrize("seed", range(5))
 def test_voyages_of_one_ship_do_not_differ(seed):
     _, told = fleet(np.zeros(P), 6, seed)
-    assert not scattered(told, np.zeros(P)).any()
+    assert scattered(told, np.zeros(P)).max() < 0.05**2
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -33,7 +33,7 @@ def test_the_number_that_differs_is_found_and_no_other(seed):
     scatter = np.zeros(P)
     scatter[2] = 0.8
     found = scattered(fleet(scatter, 8, seed)[1], np.zeros(P))
-    assert np.flatnonzero(found).tolist() == [2]
+    assert np.flatnonzero(found > SHARES[0] ** 2).tolist() == [2]
     assert 0.3 < np.sqrt(found[2]) < 1.7
 
 
@@ -46,11 +46,24 @@ def test_numbers_differ_by_what_is_usual_until_voyages_show_more():
     for all but that one."""
     usual = np.full(P, 0.1**2)
     for voyages in (1, 2):
-        assert scattered(fleet(np.zeros(P), voyages, 3)[1], np.zeros(P), usual).tolist() == usual.tolist()
+        found = scattered(fleet(np.zeros(P), voyages, 3)[1], np.zeros(P), usual)
+        np.testing.assert_allclose(found, usual, rtol=0.05)
     scatter = np.zeros(P)
     scatter[2] = 0.8
     found = scattered(fleet(scatter, 8, 1)[1], np.zeros(P), usual)
-    assert 0.3**2 < found[2] < 1.7**2 and np.delete(found, 2).tolist() == np.delete(usual, 2).tolist()
+    assert 0.3**2 < found[2] < 1.7**2
+    np.testing.assert_allclose(np.delete(found, 2), np.delete(usual, 2), rtol=0.05)
+
+
+def test_a_number_that_may_differ_counts_by_how_likely_that_is():
+    """Test: four voyages of which the third number differs, and of which more and more is said. Expected: its
+    variance grows from next to nothing to the one that is proved, without a step of more than half of that."""
+    scatter, found = np.where(np.arange(P) == 2, 0.2, 0.0), []
+    for said in np.geomspace(0.1, 8.0, 25):
+        told = [BetweenVoyages(said * t.A, said * t.b, said * t.ee) for t in fleet(scatter, 4, 0)[1]]
+        found.append(float(scattered(told, np.zeros(P))[2]))
+    steps = np.diff(found) / found[-1]
+    assert found[0] < 0.01 * found[-1] and steps.min() > -0.01 and steps.max() < 0.5
 
 
 def test_an_age_differs_by_what_the_voyages_leave_likely():

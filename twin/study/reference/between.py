@@ -3,9 +3,9 @@
 A core whose form is only roughly right is another one in a gentle zigzag than in a hard turn. Within a voyage
 that error has one sign, so that the longer the voyage the more surely it is taken for an effect. It is found
 as such: every reference voyage has numbers of its own; those scatter about the ship's (by a share of their
-priors' widths) which make each voyage clearly more probable given the others. A random-effects model:
-Pinheiro & Bates (2000) Mixed-effects models, ch. 2; variances one at a time where the score is steepest: Rao
-(1948)."""
+priors' widths) which make each voyage clearly more probable given the others; those that may do so count by
+how probable that is. A random-effects model: Pinheiro & Bates (2000) Mixed-effects models, ch. 2; variances
+one at a time where the score is steepest: Rao (1948)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -81,7 +81,7 @@ def scattered(
     told: Sequence[BetweenVoyages], pull: np.ndarray, usual: np.ndarray | None = None
 ) -> np.ndarray:
     """(P,) variance of each number from voyage to voyage, in prior widths squared: `usual` (P,) for all but
-    those that clearly differ by more; None: zero."""
+    those that clearly differ by more, and the expected variance of those that may; None: zero."""
     least = np.zeros_like(pull) if usual is None else usual
     scatter = least
     if len(told) < 2:
@@ -94,10 +94,20 @@ def scattered(
             for share in SHARES
             if share**2 > least[i]
         ]
-        scores = [_foretold(told, trial, pull) for trial in trials]
-        if max(scores) < best + DIFFERENT_LOG_PROBABILITY:
+        if not trials:
             return scatter
-        best, scatter = max(scores), trials[int(np.argmax(scores))]
+        scores = np.array([_foretold(told, trial, pull) for trial in trials])
+        if scores.max() < best + DIFFERENT_LOG_PROBABILITY:
+            return _expected(scatter, trials, scores - best)
+        best, scatter = float(scores.max()), trials[int(np.argmax(scores))]
+
+
+def _expected(scatter: np.ndarray, trials: Sequence[np.ndarray], gains: np.ndarray) -> np.ndarray:
+    """(P,) the mean of these variances (P,) and of each of `trials`, by how probable they are: a trial has
+    odds of exp(-DIFFERENT_LOG_PROBABILITY) beforehand, and gains so much."""
+    odds = np.exp(gains - DIFFERENT_LOG_PROBABILITY)
+    mean: np.ndarray = (scatter + odds @ np.array(trials)) / (1.0 + odds.sum())
+    return mean
 
 
 def doubted(
@@ -139,8 +149,8 @@ def _foretold(told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndar
 
 
 def _steepest(told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndarray) -> np.ndarray:
-    """The few numbers whose variance the voyages ask for most."""
+    """The few numbers whose variance the voyages ask for most, of those that they ask for."""
     slope, chance = np.sum(
         [voyage.score(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull)], axis=0
     )
-    return np.argsort(-slope / np.sqrt(chance + 1e-12))[:FEW]
+    return np.argsort(-slope / np.sqrt(chance + 1e-12))[: min(FEW, int(np.sum(slope > 0.0)))]

@@ -19,7 +19,7 @@ from twin.study.estimation.columns import (
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.estimation.of_effect import effect_unknowns
-from twin.study.reference.between import BetweenVoyages, doubted, scattered, ship_of, voyages
+from twin.study.reference.between import SHARES, BetweenVoyages, doubted, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
 HEALTHY_WIDTHS = (
@@ -94,9 +94,10 @@ class Known:
 
     @property
     def between(self) -> dict[str, float]:
-        """By what share of its prior's width a number differs, of those that differ by more than is `usual`
-        (C,)."""
-        each = zip(self.unknowns, self.scatter, self.usual, strict=True)
+        """By what share of its prior's width a number differs, of those that are likely to differ by
+        more than is `usual` (C,)."""
+        likely = self.usual + 0.5 * np.maximum(self.usual, SHARES[0] ** 2)
+        each = zip(self.unknowns, self.scatter, likely, strict=True)
         return {u.label: float(np.sqrt(s)) for u, s, least in each if s > least}
 
     def nuisance(self, without: int | None = None) -> Nuisance:
