@@ -72,7 +72,7 @@ class FittedCore:
         """With what is usual on this ship. `measured_by`: the fit whose errors on what was held out count,
         where this one has used every voyage."""
         progress("estimating the baseline of this ship")
-        lasting_ones = usual(self.chosen.ship, self.core.tracks, self.core.noise_model)
+        lasting_ones = usual(self.chosen.ship, self.chosen.by_steps, self.core.tracks, self.core.noise_model)
         by = measured_by or self
         errors_of = {"held_out": by.chosen.off.by_horizon, "by_regime": by.chosen.off.by_regime}
         after = noted(self.chosen.ship, "structural", lasting_ones | errors_of)

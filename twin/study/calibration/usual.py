@@ -15,7 +15,7 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.prediction.left_out import models_without, path_error
-from twin.study.reference.derivatives import first_prior
+from twin.study.reference.derivatives import first_prior, one_step_core
 from twin.study.reference.healthy import left_out_scores
 from twin.study.reference.nuisance import known_from, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.reference.sailed import fed
@@ -26,20 +26,22 @@ from twin.study.track.track import Track
 LASTING_SE = 4.0  # standard errors
 
 
-def usual(ship: Ship, tracks: Sequence[Track], noise_model: NoiseModel) -> dict[str, Any]:
-    """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ
-    from voyage to voyage; and the noise model `beside` all that. A diagnosis starts from here."""
-    model, known = Model.of(ship), of_ship(ship)
+def usual(ship: Ship, by_steps: Ship, tracks: Sequence[Track], noise_model: NoiseModel) -> dict[str, Any]:
+    """Offsets from the ship `by_steps` (its core is the one by which the noise model was found) and their
+    covariance, in the unknowns' own units; by how much numbers differ from voyage to voyage; and the noise
+    model `beside` all that. A diagnosis starts from here. In `path_error`, errors of `ship`."""
+    model, known = Model.of(by_steps), of_ship(by_steps)
     unknowns = usual_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
     beside = structural_noise_beside(lines, unknowns, noise_model)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
-    centres = np.array([first_prior(u, ship).centre for u in unknowns])
+    centres = np.array([first_prior(u, by_steps).centre for u in unknowns])
     references = known_from(lines, unknowns, beside, temper, centres)
     nuisance, between = references.nuisance(), references.between
     path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, references.scatter)
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
+    off = one_step_core(ship, by_steps)
     return {
         "labels": [u.label for u in nuisance.unknowns],
         "offset": (sd * (covariance @ nuisance.pull)).tolist(),
@@ -50,7 +52,7 @@ def usual(ship: Ship, tracks: Sequence[Track], noise_model: NoiseModel) -> dict[
         "temper_beside": temper,
         "weather": strengths(tracks, model, known),
         "left_out_scores": left_out_scores(tracks, model, known, references, beside, temper),
-    } | ({"path_error": path} if path else {})
+    } | {name: x for name, x in (("path_error", path), ("one_step_core", off)) if x}
 
 
 def path_errors(
@@ -67,10 +69,16 @@ def path_errors(
     (reference/path_error.py); empty where nothing can be predicted. `lines`: `tracks` linearised in
     `unknowns`; `centres` (P,): means of the unknowns' priors, in the unknowns' own units; `scatter` (P,):
     variance of each from voyage to voyage, in prior widths squared."""
-    model, sd = Model.of(ship), np.array([u.sd for u in unknowns])
+    model, sd, known = Model.of(ship), np.array([u.sd for u in unknowns]), of_ship(ship)
     pull = (centres - np.array([u.centre for u in unknowns])) / sd
     without = models_without(
-        model, unknowns, innovate(lines, [noise_model])[0], scatter, pull, temper, of_ship(ship)
+        model,
+        usual_unknowns(model, known),
+        innovate(lines, [noise_model])[0],
+        scatter,
+        pull,
+        temper,
+        known,
     )
     found = path_error(model, tracks, without)
     return found.entry() if found else {}

@@ -20,10 +20,12 @@ COMPASS = of_role("compass")
 
 
 class FittedShip(NamedTuple):
-    """The ship as one way fitted it, and how far off its predictions of what was not used are."""
+    """The ship as one way fitted it, and as steps did, from where that way began; and how far off its
+    predictions of what was not used are."""
 
     way: str
     ship: Ship
+    by_steps: Ship
     off: HeldOutErrors
 
     @property
@@ -50,14 +52,14 @@ def best_way(
     """The best of the ships to choose from: fitted by steps, or from there along the path; and, where the
     compass's deviation was found beside the core, without it, for the next voyage may not have it."""
     begun = [steps, *([_without_curve(steps)] if found_curve else [])]
-    ships = [("steps", s) for s in begun] if by != "paths" or not excited else []
+    ships = [("steps", s, s) for s in begun] if by != "paths" or not excited else []
     if by != "steps" and excited:
         progress("fitting along the path")
         known = of_ship(steps)
         ships += [
-            ("paths", with_core_of(s, rolled_out(tracks, Model.of(s), excited, known).ship)) for s in begun
+            ("paths", with_core_of(s, rolled_out(tracks, Model.of(s), excited, known).ship), s) for s in begun
         ]
-    every = [FittedShip(way, s, errors(Model.of(s), held_out)) for way, s in ships]
+    every = [FittedShip(way, s, first, errors(Model.of(s), held_out)) for way, s, first in ships]
     return min(every, key=lambda one: one.measure)
 
 

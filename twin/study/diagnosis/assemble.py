@@ -25,6 +25,7 @@ from twin.study.estimation.columns import (
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.estimation.of_effect import effect_unknowns
+from twin.study.reference.derivatives import with_one_step_core
 from twin.study.reference.evidence import Nuisance
 from twin.study.reference.nuisance import (
     TEMPER,
@@ -81,7 +82,7 @@ def of_tracks(
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
     fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
     (`Effect.kinematic`); of those in the ship file a change is judged all the same."""
-    model, tracks = Model.of(ship), distinct(sailed)
+    model, about, tracks = Model.of(ship), Model.of(with_one_step_core(ship)), distinct(sailed)
     wanted = {*asked, *(type(e) for e in model.effects)}
     catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in wanted}
     unnamed = {e.__name__: e for e in unnamed_of(ship)}
@@ -94,16 +95,16 @@ def of_tracks(
     effects = tuple(
         u
         for name in candidates
-        for u in of_each(effect_unknowns(judged[name], model), tracks if name in own else ())
+        for u in of_each(effect_unknowns(judged[name], about), tracks if name in own else ())
     )
-    nuisance, rough = nuisance_unknowns(model, catalogue), rough_unknowns(model)
+    nuisance, rough = nuisance_unknowns(about, catalogue), rough_unknowns(about)
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
-    extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
+    extra = [u for u in lasting(about, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     before = (
-        _of_references(references, model, catalogue, progress)
+        _of_references(references, about, catalogue, progress)
         if references
-        else _of_calibration(model, nuisance)
+        else _of_calibration(about, nuisance)
     )
     daily = dict(before.known.daily) | of_known_weather(model, catalogue)
     daily |= {u.label: daily[key] for u in effects if (key := f"{u.owner}.{u.name}") in daily}
@@ -112,6 +113,7 @@ def of_tracks(
     case = Case(
         tracks=tracks,
         model=model,
+        linearised=about,
         catalogue=judged,
         candidates=candidates,
         unknowns=unknowns,
@@ -124,7 +126,7 @@ def of_tracks(
             n: ODDS_WEATHER if e.is_weather() else ODDS_UNNAMED if n in unnamed else ODDS
             for n, e in judged.items()
         },
-        lines=read_lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
+        lines=read_lines(tracks, about, unknowns, judged, MOST_SEGMENTS),
         excited=any(manoeuvred(t, ship) for t in tracks),
         white=before.noise_model.white,
         scatter=before.noise_model.sensor,

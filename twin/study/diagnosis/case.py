@@ -59,7 +59,8 @@ class Case:
     """Voyages to be judged, linearised about the ship's model, and everything that is known beforehand."""
 
     tracks: tuple[Track, ...]
-    model: Model
+    model: Model  # of the ship file
+    linearised: Model  # the same with the core about which the tracks are linearised (`one_step_core`)
     catalogue: dict[str, type[Effect]]
     candidates: tuple[str, ...]
     unknowns: tuple[Unknown, ...]  # core, then the parameters of the candidates and of all instruments

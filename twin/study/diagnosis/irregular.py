@@ -56,5 +56,5 @@ def log_bayes_factor(case: Case, found: Found) -> float | None:
 def _of(case: Case, own: set[str], line: Linear) -> np.ndarray:
     """(N, 3) accelerations, unsigned [m/s2, m/s2, rad/s2], that these effects give beside the others."""
     others = (effect for effect in line.model.effects if type(effect).__name__ not in own)
-    without = case.model.but(*others)
+    without = case.linearised.but(*others)
     return np.abs(accelerations(line.track, line.model) - accelerations(line.track, without))

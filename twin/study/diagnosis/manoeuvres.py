@@ -198,7 +198,7 @@ def inputs(model: Model, manoeuvre: Manoeuvre, helm: HelmOrder, delta: float, po
 def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
     """Log odds that this track would be expected to give for `first` (at z (Q,) prior widths) against
     `second`."""
-    here, _ = case.model.without_inputs(track.missing())
+    here, _ = case.linearised.without_inputs(track.missing())
     A = case.reduced([linearise(track, here, case.unknowns, case.catalogue)], [case.noise_model])[0]
     a, b = A.rows((first,)), A.rows((second,))
     size = z[a]
@@ -247,7 +247,7 @@ def showing(case: Case, model: Model, unseen: Sequence[str]) -> dict[str, object
 
 
 def _shown_by(case: Case, track: Track, names: Sequence[str]) -> list[str]:
-    here, _ = case.model.without_inputs(track.missing())
+    here, _ = case.linearised.without_inputs(track.missing())
     line = linearise(track, here, case.unknowns, case.catalogue)
     reduced = case.reduced([line], [case.noise_model])[0]
     return [name for name in names if visible(reduced, name)]

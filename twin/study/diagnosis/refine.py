@@ -276,7 +276,8 @@ def about(
     place = [column[u.label] for u in fresh]
     lines = []
     for line, model in zip(case.lines, models, strict=True):
-        here, _ = model.without_inputs(line.track.missing())
+        there = Model(case.linearised.ship, model.effects)
+        here, _ = there.without_inputs(line.track.missing())
         new = linearise(line.shown, here, fresh, case.catalogue, at)
         A, R = line.A.copy(), line.R.copy()
         A[:, :, place], R[:, :, place] = new.A, new.R

@@ -92,6 +92,25 @@ def with_core_of(ship: Ship, other: Ship) -> Ship:
     return noted(ship.with_derivatives(**values), "derivatives", entries)
 
 
+def one_step_core(ship: Ship, by_steps: Ship) -> dict[str, float]:
+    """What the ship file keeps of the core that was fitted by steps: by how much that differs from the file's
+    own [prime units]; nothing where it is the file's own."""
+    off = {name: _off(name, ship, by_steps) for name in ship.notes["derivatives"] if ship.has(name)}
+    return {name: x for name, x in off.items() if x}
+
+
+def _off(name: str, ship: Ship, by_steps: Ship) -> float:
+    return float(by_steps.derivative(name)) - float(ship.derivative(name))
+
+
+def with_one_step_core(ship: Ship) -> Ship:
+    """The ship with the core that predicts best one step ahead, as a filter reads a voyage. Its file has
+    another one where that predicts better several lengths ahead; a voyage is judged about the one by which
+    the noise model and the numbers' covariance were found."""
+    off = ship.notes.get("structural", {}).get("one_step_core", {})
+    return ship.with_derivatives(**{n: float(ship.derivative(n)) + x for n, x in off.items() if ship.has(n)})
+
+
 def noted(ship: Ship, section: str, entries: dict[str, Any]) -> Ship:
     """The ship whose file remembers this too."""
     return replace(ship, notes={**ship.notes, section: {**ship.notes.get(section, {}), **entries}})
