@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from twin.commands.story import MONDAY
+from twin.errors import SettingsError
+from twin.physics.model import Model
 from twin.recording.read import read_voyage
 from twin.study.calibration.usual import usual
 from twin.study.diagnosis.assemble import of_tracks
+from twin.study.estimation.columns import core_unknowns
 from twin.study.reference.derivatives import one_step_core, with_one_step_core
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import track
@@ -20,8 +23,7 @@ ALONG_THE_PATH = {"Y_v": 1.3, "N_r": 0.8, "X_uu": 1.1, "kappa": 0.9}  # times wh
 def files(tanker):
     """A ship file whose core was fitted by steps, and one with another core, fitted along the path."""
     other = tanker.with_derivatives(**{n: k * float(tanker.derivative(n)) for n, k in ALONG_THE_PATH.items()})
-    structural = other.notes["structural"] | {"one_step_core": one_step_core(other, tanker)}
-    return tanker, replace(other, notes={**other.notes, "structural": structural})
+    return tanker, _keeping(other, one_step_core(other, tanker))
 
 
 @pytest.fixture(scope="module")
@@ -79,3 +81,20 @@ def test_what_is_usual_on_the_ship_is_that_about_the_core_by_steps(files, tracks
     assert set(other.pop("one_step_core")) == set(ALONG_THE_PATH) and not one.pop("one_step_core", {})
     assert one.pop("path_error") != other.pop("path_error")
     assert one == other
+
+
+@pytest.mark.parametrize("kept", [{"N_r": "x"}, 3, {"N_r": float("nan")}])
+def test_a_damaged_file_is_said_in_one_line(tanker, kept):
+    with pytest.raises(SettingsError, match=r"\[structural\] one_step_core .* damaged .*Calibrate it again"):
+        with_one_step_core(_keeping(tanker, kept))
+
+
+def test_a_number_that_its_owner_has_moved_to_the_end_of_its_box_stays_inside(tanker):
+    (own,) = (u for u in core_unknowns(Model.of(tanker)) if u.name == "N_r")
+    there = with_one_step_core(_keeping(tanker.with_derivatives(N_r=own.hi), {"N_r": 1.0}))
+    assert float(there.derivative("N_r")) == own.hi
+
+
+def _keeping(ship, kept):
+    structural = ship.notes["structural"] | {"one_step_core": kept}
+    return replace(ship, notes={**ship.notes, "structural": structural})

@@ -3,13 +3,16 @@
 import datetime
 from collections.abc import Sequence
 from dataclasses import replace
+from math import isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from twin.errors import SettingsError
+from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.estimation.box import within
-from twin.study.estimation.columns import Unknown
+from twin.study.estimation.columns import Unknown, core_unknowns, with_values
 from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Fit
 
@@ -106,9 +109,19 @@ def _off(name: str, ship: Ship, by_steps: Ship) -> float:
 def with_one_step_core(ship: Ship) -> Ship:
     """The ship with the core that predicts best one step ahead, as a filter reads a voyage. Its file has
     another one where that predicts better several lengths ahead; a voyage is judged about the one by which
-    the noise model and the numbers' covariance were found."""
-    off = ship.notes.get("structural", {}).get("one_step_core", {})
-    return ship.with_derivatives(**{n: float(ship.derivative(n)) + x for n, x in off.items() if ship.has(n)})
+    the noise model and the numbers' covariance were found. Inside the boxes, also where its owner has moved a
+    number of the file since. SettingsError: the file does not hold it as it was written."""
+    off, model = ship.notes.get("structural", {}).get("one_step_core", {}), Model.of(ship)
+    try:
+        own = [(u, u.centre + float(off[u.name])) for u in core_unknowns(model) if u.name in off]
+        if not all(isfinite(value) for _, value in own):
+            raise ValueError("not finite")
+    except (TypeError, ValueError) as error:
+        raise SettingsError(
+            f"{ship.name}: [structural] one_step_core in the ship file is damaged ({error}). "
+            "Calibrate it again."
+        ) from None
+    return with_values(model, [u for u, _ in own], [value for _, value in own], {}).ship
 
 
 def noted(ship: Ship, section: str, entries: dict[str, Any]) -> Ship:
