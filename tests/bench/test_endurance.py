@@ -1,8 +1,10 @@
 """The shocks of the service, once each and short: what is counted is what happened."""
 
 import random
+import time
 
 import pytest
+import zenoh
 
 from bench.endurance import side_by_side, storm
 from bench.endurance.killed_service import Said, ServiceFolder, said_of
@@ -12,14 +14,34 @@ from bench.endurance.shocks import Killed, Shocked, clock_step_s, kills, pause_s
 from bench.endurance.side_by_side import ShocksKept, shocked
 from bench.fuzz.aboard import LoopTarget, Watched
 from bench.lie_kinds import LIES
+from bench.reference import WEATHERS
+from twin.live.keelson.messages import encode_float, wrap
+from twin.live.keelson.topics import INPUTS, key
+from twin.live.keelson.zenoh_config import BusSettings, configuration
 from twin.live.left_open import LeftOpen
+
+
+def say_waves(endpoint):
+    """The wave height of the sea, which its own instrument says once a minute: no promise before."""
+    (topic,) = (t for t in INPUTS if "wave_height_significant_m" in t.channels)
+    now_ns = time.time_ns()
+    with zenoh.open(configuration(BusSettings(connect=(endpoint,)))) as session:
+        publisher = session.declare_publisher(key("twin", "ship", topic.subject, "sea"))
+        time.sleep(0.5)  # until the twin hears it
+        publisher.put(wrap(encode_float(WEATHERS["TS-01"].wave_height_m, now_ns), now_ns))
+        time.sleep(0.2)
 
 
 def test_a_service_that_is_killed_loses_at_most_half_a_second_and_all_its_logs_are_whole(tmp_path):
     """Test: two kills under way, everything on. Expected: as the page counts two hundred."""
     place, made = ServiceFolder(tmp_path, "kvlcc2"), []
+
+    def keep(_, found):
+        made.append(found)
+        say_waves(place.endpoint)
+
     try:
-        good, files = kills(place, iter((0, 1)), lambda k, found: made.append(found))
+        good, files = kills(place, iter((0, 1)), keep)
     finally:
         place.close()
     assert [k.lost_s <= 0.5 for k in made] == [True, True]
