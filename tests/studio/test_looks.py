@@ -16,6 +16,11 @@ NAMELESS = """[...document.querySelectorAll("button, a, input, select, textarea,
   .map((e) => e.outerHTML.slice(0, 120))"""
 TWICE = """(() => { const ids = [...document.querySelectorAll("[id]")].map((e) => e.id);
   return ids.filter((id, i) => ids.indexOf(id) !== i); })()"""
+# what is drawn after the page itself has come, and is the same for a tenth of a second
+STILL = """(async () => { const now = () => [document.body.innerHTML.length, innerWidth, document.documentElement.scrollWidth,
+    [...document.querySelectorAll("canvas")].map((e) => [e.width, e.clientWidth])].join();
+  const before = now(); await new Promise((d) => setTimeout(d, 100)); await new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)));
+  return before === now() && document.getAnimations().every((a) => a.playState !== "running"); })()"""
 SHIP, MONDAY, TUESDAY = "tanker.toml", ["monday.mcap"], ["tuesday.mcap"]
 ASKED = (
     {"verb": "look", "file": "owner.csv", "ship": SHIP},
@@ -72,7 +77,7 @@ def show(page, address, width=1400, theme="light", height=900):
     before = page.value("twinStudio.drawn")
     page.value(f"location.hash = '#/'; location.hash = {json.dumps(address)}")
     page.wait(f"twinStudio.drawn > {before}", 30)
-    time.sleep(0.5)
+    page.wait(STILL, 30)
 
 
 def keep(page, path):
