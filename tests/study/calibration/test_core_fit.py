@@ -213,7 +213,7 @@ def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship
             sailed(on_a_mast(recorded(str(i), r.columns, every=10), height), ship)
             for i, r in enumerate(recordings)
         )
-        found = fitted_core(fitted, [(held.track, 0)], ship)
+        found = fitted_core(fitted, [(held.track, 0)], ship, by="steps")
         ships.append(found.chosen.ship)
         off.append(found.held_out[-1]["position_m"])
     (antenna,) = [e for e in ships[1].effects if type(e).__name__ == "AntennaOffset"]

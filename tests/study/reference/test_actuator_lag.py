@@ -1,21 +1,19 @@
 """What is recorded of a thruster is its order: the lag between that and its thrust is found on the references
 and becomes a part of the boat's model. The boats sail by equations that share no line with the twin."""
 
-import json
-
 import numpy as np
 import pytest
 
 from bench.small_boats import sailed, ship_of
-from twin import cli
 from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load, save
-from twin.recording.write import write_voyage
 from twin.study.calibration.calibration_lines import terminal_lines
+from twin.study.calibration.core_fit import fitted_core
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.linear import linearise
 from twin.study.reference.nuisance import TEMPER
+from twin.study.reference.sailed import sailed as tracked
 from twin.study.reference.steering_gear import (
     LATER,
     SLOWER,
@@ -101,15 +99,11 @@ def test_the_numbers_of_a_shared_lag_are_asked_once_and_of_lags_that_differ_each
 
 @pytest.fixture(scope="module")
 def calibrated(tmp_path_factory):
-    """A boat calibrated on two voyages: (what was told, JSON, ship file)."""
-    folder = tmp_path_factory.mktemp("lag")
-    for v in (paths := {f"{i}.mcap": v for i, v in enumerate(voyages(BOTH))}):
-        write_voyage(paths[v], folder / v)
-    save(ship_of(BOAT), folder / "start.toml")
-    words = ["calibrate", *(str(folder / v) for v in paths), "--ship", str(folder / "start.toml")]
-    out, said = folder / "boat.toml", folder / "said.json"
-    assert cli.main([*words, "-o", str(out), "--json", str(said), "--force"]) == 0
-    return json.loads(said.read_text()), load(out)
+    """A boat calibrated on two voyages: (what was told, ship file)."""
+    fitted = [tracked(v, ship_of(BOAT)) for v in voyages(BOTH)]
+    made = fitted_core(fitted, [(fitted[1].track, 0)], ship_of(BOAT), by="steps").calibrated()
+    save(made.ship, out := tmp_path_factory.mktemp("lag") / "boat.toml")
+    return made.result | {"held_out_is": "", "doubts": [], "data_checks": []}, load(out)
 
 
 def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated):
