@@ -165,7 +165,8 @@ def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, 
 
 
 def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
-    result = diagnose([voyages["HeadingBias"]], tanker, [voyages["calm"], voyages["calm too"]]).result
+    asked, *references = (voyages[name].between(0.0, 700.0) for name in ("HeadingBias", "calm", "calm too"))
+    result = diagnose([asked], tanker, references).result
     assert result["missing"][:1] == ["HeadingBias"], "\n".join(terminal_lines(result))
     assert np.isfinite(result["floor"]["temper"])
 

@@ -38,17 +38,24 @@ def _opened(case):
     return Hypotheses(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
 
 
-def weighed(case, *judged):
-    """The pair in every noise scenario, once these sets were relinearised at their estimates."""
-    held = book(case)
-    for chosen in judged:
-        held.judge(chosen)
-    return {scenario: h.log_weight for (s, scenario), h in held.entries.items() if s == PAIR}
+@pytest.fixture(scope="module")
+def in_turn(case):
+    """By order of the two: the case with both relinearised at their estimates, and what the pair weighs in every
+    noise scenario after each."""
+
+    def weighed(*judged):
+        held, weights = book(case), []
+        for chosen in judged:
+            held.judge(chosen)
+            weights.append({scenario: h.log_weight for (s, scenario), h in held.entries.items() if s == PAIR})
+        return held, *weights
+
+    return weighed(PAIR[:1], PAIR[1:]), weighed(PAIR[1:], PAIR[:1])
 
 
-def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_judged_first(case):
-    worn, slow = weighed(case, PAIR[:1]), weighed(case, PAIR[1:])
-    for both in (weighed(case, PAIR[:1], PAIR[1:]), weighed(case, PAIR[1:], PAIR[:1])):
+def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_judged_first(in_turn):
+    (_, worn, worn_first), (_, slow, slow_first) = in_turn
+    for both in (worn_first, slow_first):
         # beside no weather a pair is weighed where that is among the likeliest
         known = worn.keys() & slow.keys()
         assert {scenario: both[scenario] for scenario in known} == pytest.approx(
@@ -58,11 +65,9 @@ def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_j
 
 
 def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not_looked_for_again(
-    case, monkeypatch
+    case, in_turn, monkeypatch
 ):
-    held = book(case)
-    held.judge(PAIR[:1])
-    held.judge(PAIR[1:])
+    held = in_turn[0][0]
     worn, slow = (held.found[(name,)].hypothesis.log_weight for name in PAIR)
     began = {}
 
