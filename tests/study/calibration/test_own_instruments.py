@@ -32,7 +32,7 @@ def smoothed(voyage: Voyage) -> Voyage:
 def calibrated(voyages, tanker):
     """The published tanker calibrated on three voyages with such a receiver."""
     fitted = [
-        sailed(smoothed(voyages[name].between(0.0, 700.0)), tanker)
+        sailed(smoothed(voyages[name].between(0.0, 450.0)), tanker)
         for name in ("calm", "nothing", "calm again")
     ]
     return fitted_core(fitted, [(fitted[1].track, 0)], tanker, by="steps").calibrated()
