@@ -36,10 +36,11 @@ class Sea:
 
 @pytest.fixture
 def sea(watch, feed, ticks):
+    """From the first prediction on: it is what a page is waited for."""
     for tick in ticks:
         tick.reasons.append("rudder_angle_deg is lost: its last value, 3.1, is held")
         tick.measured.true_wind_speed_mps, tick.measured.true_wind_direction_deg = 8.0, 200.0
-    sea = Sea(watch, feed, ticks)
+    sea = Sea(watch, feed, ticks[next(i for i, tick in enumerate(ticks) if tick.predictions) :])
     yield sea
     sea.over = True
     sea.thread.join(5)
