@@ -109,7 +109,7 @@ def test_the_estimate_moves_and_a_stopped_twin_is_marked_until_it_speaks_again(p
     page.wait(f"!!{FRAME}?.place && ['hybrid', 'physics'].includes({FRAME}.mode.name)", 60)
     assert page.value("document.querySelector('main .command code').textContent").endswith(aboard.place)
     before = page.value(FRAME)
-    page.wait(f"{FRAME}.wall_s > {before['wall_s'] + 5.0}", 30)
+    page.wait(f"{FRAME}.wall_s > {before['wall_s'] + 2.0}", 30)
     after = page.value(FRAME)
     moved = math.hypot(*(after["place"][k] - before["place"][k] for k in ("n", "e")))
     assert after["ship"]["ship"] == "KVLCC2" and moved / (after["wall_s"] - before["wall_s"]) > 1.0

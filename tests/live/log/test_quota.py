@@ -78,7 +78,7 @@ def test_the_recorder_deletes_its_oldest_files_while_it_writes_and_says_so(tmp_p
     monkeypatch.setattr("twin.live.log.record.TRIM_S", 0.0)
     most, said = 0, set()
     with Recorder(tmp_path, max_bytes=100_000, quota=Quota(max_mb=1.0)) as recorder:
-        for i in range(40):
+        for i in range(20):
             recorder.write(TOPIC, SCALAR, os.urandom(100_000), i)
             before = recorder.state.written
             while recorder.state.written == before:
@@ -88,7 +88,7 @@ def test_the_recorder_deletes_its_oldest_files_while_it_writes_and_says_so(tmp_p
             assert recorder.state.ok
     assert most < 1.35e6
     assert any("log.max_mb = 1" in alarm for alarm in said)
-    assert left(tmp_path)[-1] >= 40 and len(left(tmp_path)) <= 10
+    assert left(tmp_path)[-1] >= 20 and len(left(tmp_path)) <= 10
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting needs root")
