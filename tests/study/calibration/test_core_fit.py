@@ -13,7 +13,7 @@ from bench.reference import SeaCase, simulate
 from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
-from twin.physics.ship import load
+from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
 from twin.study.calibration.calibration_record import sourced
 from twin.study.calibration.core_fit import fitted_core
@@ -144,28 +144,21 @@ def test_a_file_that_is_no_voyage_leaves_no_ship_file(tmp_path, capsys):
     assert len(capsys.readouterr().err.strip().splitlines()[-1]) > 20
 
 
+def by_steps(voyages, ship, folder):
+    """(the ship file, what was told) of a calibration on all but the last, which is held out."""
+    *fitted, held = (sailed(v, ship) for v in voyages)
+    made = fitted_core(fitted, [(held.track, 0)], ship, by="steps").calibrated()
+    save(made.ship, folder / "better.toml")
+    return load(folder / "better.toml"), made.result
+
+
 def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_the_ship(voyages, tmp_path):
     """64 m ahead of where the ship file has it, as if the receiver were never told its length; predictions
     are better for it."""
-    paths = []
-    for name in ("calm", "calm too", "nothing"):
-        paths.append(str(tmp_path / f"{name.replace(' ', '-')}.mcap"))
-        write_voyage(antenna_elsewhere(voyages[name].between(0.0, 500.0), 64.0), paths[-1])
-    out, said = tmp_path / "better.toml", tmp_path / "said.json"
-    words = [
-        "calibrate",
-        *paths[:2],
-        "--held-out",
-        paths[2],
-        "--ship",
-        "kvlcc2",
-        "-o",
-        str(out),
-        "--json",
-        str(said),
-    ]
-    assert cli.main(words) == 0
-    ship, result = load(out), json.loads(said.read_text())
+    elsewhere = (
+        antenna_elsewhere(voyages[name].between(0.0, 500.0), 64.0) for name in ("calm", "calm too", "nothing")
+    )
+    ship, result = by_steps(elsewhere, load("kvlcc2"), tmp_path)
     (antenna,) = [e for e in ship.effects if type(e).__name__ == "AntennaOffset"]
     assert antenna.ahead == pytest.approx(64.0, rel=0.25)
     assert (
@@ -238,24 +231,8 @@ def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_do
             for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))
         ]
     )
-    paths = [tmp_path / f"{i}.mcap" for i in range(3)]
-    for path, r in zip(paths, recordings, strict=True):
-        write_voyage(recorded(path.stem, r.columns, every=4), path)
-    out, said = tmp_path / "better.toml", tmp_path / "said.json"
-    words = [
-        "calibrate",
-        *map(str, paths[:2]),
-        "--held-out",
-        str(paths[2]),
-        "--ship",
-        "usv",
-        "-o",
-        str(out),
-        "--json",
-        str(said),
-    ]
-    assert cli.main(words) == 0
-    ship, result = load(out), json.loads(said.read_text())
+    windy = (recorded(str(i), r.columns, every=4) for i, r in enumerate(recordings))
+    ship, result = by_steps(windy, load("usv"), tmp_path)
     (wind,) = [e for e in ship.effects if type(e).__name__ == "Wind"]
     sd = ship.notes["effects"]["Wind"]["c_y"]["sd"]
     assert wind.c_y > 4.0 * sd and result["wind"]["c_y"]["value"] == wind.c_y
