@@ -13,11 +13,9 @@ from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
 from twin.physics.model import Model
 from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
-from twin.study.calibration.core_fit import fitted_core
 from twin.study.diagnosis.assemble import judgeable
 from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.nuisance import HEALTHY_WIDTHS, from_ship, nuisance_unknowns, of_known_weather
-from twin.study.reference.sailed import sailed
 from twin.study.track.track import track
 
 GYRO = 1e-6  # rad/s that the ship file already says of the gyro
@@ -27,17 +25,27 @@ GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 def ordered(tmp_path_factory, at_sea):
     """Two voyages of the tanker that hold the rudder's order behind a gear slower than usual, and one behind
     a gear that is slower still; what was hidden in each; and the ship calibrated on the first two."""
-    folder, paths, fitted, hidden = tmp_path_factory.mktemp("gear"), {}, [], {}
-    ship = load("kvlcc2")
-    ship = replace(ship, effects=(catalogue()["GyroBias"].absent(ship).but(bias=GYRO),))
-    for name, behind in (("zigzag", "slow gear zigzag"), ("mixed", "slow gear"), ("slower", "slower gear")):
-        voyage, truth = at_sea[behind]
+    folder, paths, hidden = tmp_path_factory.mktemp("gear"), {}, {}
+    for name, sailed in (("zigzag", "slow gear zigzag"), ("mixed", "slow gear"), ("slower", "slower gear")):
+        voyage, truth = at_sea[sailed]
         paths[name], hidden[name] = folder / f"{name}.mcap", truth["SteeringLag"]
         write_voyage(voyage, paths[name])
-        fitted += [] if name == "slower" else [sailed(voyage, ship)]
-    made = fitted_core(fitted, [(fitted[1].track, 0)], ship, by="steps").calibrated()
-    save(made.ship, out := folder / "tanker.toml")
-    return paths, hidden, out, made.result
+    start, out, said = folder / "start.toml", folder / "tanker.toml", folder / "said.json"
+    ship = load("kvlcc2")
+    save(replace(ship, effects=(catalogue()["GyroBias"].absent(ship).but(bias=GYRO),)), start)
+    words = [
+        "calibrate",
+        str(paths["zigzag"]),
+        str(paths["mixed"]),
+        "--ship",
+        str(start),
+        "-o",
+        str(out),
+        "--json",
+        str(said),
+    ]
+    assert cli.main(words) == 0
+    return paths, hidden, out, json.loads(said.read_text())
 
 
 def test_the_gear_between_order_and_rudder_is_found_on_the_references(ordered):
