@@ -27,7 +27,8 @@ def test_a_hull_without_lift_is_doubtful(lift, lines):
 def test_only_faults_are_said_to_be_hard_to_see():
     """Test: what waves do at once, the core's form and how late instruments are differ as much as an effect.
     Expected: the effect alone is told: the others are no faults that could be seen."""
-    inner = {"core.N_vdot": 1.6, "form.X_u4": 1.6, "late.log": 1.6, "sea.helm": 1.6, "rough.yaw": 1.6}
+    inner = {"core.N_vdot": 1.6, "core.port.gain": 1.6, "form.X_u4": 1.6, "late.log": 1.6}
+    inner |= {"sea.helm": 1.6, "rough.yaw": 1.6}
     assert told(inner) == []
     assert told({"Current.north": 1.6}) == []  # a stream is another one every day
     (one,) = told(inner | {"SteeringLag.delay": 1.6})

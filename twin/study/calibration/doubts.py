@@ -134,17 +134,15 @@ def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
-def _lasts(owner: str) -> bool:
-    """Whether it should be alike on these voyages: no part of the core, and no weather."""
-    return owner not in ("core", *NO_MODEL) and not find(owner).is_weather()
+def _lasts(label: str) -> bool:
+    """Whether it should be alike on these voyages: no part of the core (core.N_r, core.port.gain), and no
+    weather."""
+    owner, _, _ = label.rpartition(".")
+    return label.partition(".")[0] not in ("core", *NO_MODEL) and not find(owner).is_weather()
 
 
 def _blind(between: Mapping[str, float]) -> list[str]:
-    large = {
-        label: widths
-        for label, widths in between.items()
-        if widths >= BLIND and _lasts(label.rpartition(".")[0])
-    }
+    large = {label: widths for label, widths in between.items() if widths >= BLIND and _lasts(label)}
     if not large:
         return []
     told = ", ".join(f"{label} ({widths:.1f} times its usual width)" for label, widths in large.items())

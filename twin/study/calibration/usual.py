@@ -31,17 +31,18 @@ def usual(ship: Ship, by_steps: Ship, tracks: Sequence[Track], noise_model: Nois
     covariance, in the unknowns' own units; by how much numbers differ from voyage to voyage; and the noise
     model `beside` all that. A diagnosis starts from here. In `path_error`, errors of `ship`."""
     model, known = Model.of(by_steps), of_ship(by_steps)
-    unknowns = usual_unknowns(model, known)
-    lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
+    unknowns, lines = _linearised(by_steps, tracks)
     beside = structural_noise_beside(lines, unknowns, noise_model)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
     centres = np.array([first_prior(u, by_steps).centre for u in unknowns])
     references = known_from(lines, unknowns, beside, temper, centres)
     nuisance, between = references.nuisance(), references.between
+    off = one_step_core(ship, by_steps)
+    if off:  # without one of its voyages it would be elsewhere by what holds about itself
+        unknowns, lines = _linearised(ship, tracks)
     path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, references.scatter)
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
-    off = one_step_core(ship, by_steps)
     return {
         "labels": [u.label for u in nuisance.unknowns],
         "offset": (sd * (covariance @ nuisance.pull)).tolist(),
@@ -53,6 +54,13 @@ def usual(ship: Ship, by_steps: Ship, tracks: Sequence[Track], noise_model: Nois
         "weather": strengths(tracks, model, known),
         "left_out_scores": left_out_scores(tracks, model, known, references, beside, temper),
     } | {name: x for name, x in (("path_error", path), ("one_step_core", off)) if x}
+
+
+def _linearised(ship: Ship, tracks: Sequence[Track]) -> tuple[tuple[Unknown, ...], list[Linear]]:
+    """All that a reference voyage may tell of the ship, and these voyages linearised about it."""
+    model, known = Model.of(ship), of_ship(ship)
+    unknowns = usual_unknowns(model, known)
+    return unknowns, [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
 
 
 def path_errors(
@@ -69,16 +77,10 @@ def path_errors(
     (reference/path_error.py); empty where nothing can be predicted. `lines`: `tracks` linearised in
     `unknowns`; `centres` (P,): means of the unknowns' priors, in the unknowns' own units; `scatter` (P,):
     variance of each from voyage to voyage, in prior widths squared."""
-    model, sd, known = Model.of(ship), np.array([u.sd for u in unknowns]), of_ship(ship)
+    model, sd = Model.of(ship), np.array([u.sd for u in unknowns])
     pull = (centres - np.array([u.centre for u in unknowns])) / sd
     without = models_without(
-        model,
-        usual_unknowns(model, known),
-        innovate(lines, [noise_model])[0],
-        scatter,
-        pull,
-        temper,
-        known,
+        model, unknowns, innovate(lines, [noise_model])[0], scatter, pull, temper, of_ship(ship)
     )
     found = path_error(model, tracks, without)
     return found.entry() if found else {}
