@@ -9,6 +9,7 @@ from twin.commands.story import MONDAY
 from twin.errors import SettingsError
 from twin.physics.model import Model
 from twin.recording.read import read_voyage
+from twin.study.calibration import usual as baseline
 from twin.study.calibration.usual import usual
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.estimation.columns import core_unknowns
@@ -81,6 +82,18 @@ def test_what_is_usual_on_the_ship_is_that_about_the_core_by_steps(files, tracks
     assert set(other.pop("one_step_core")) == set(ALONG_THE_PATH) and not one.pop("one_step_core", {})
     assert one.pop("path_error") != other.pop("path_error")
     assert one == other
+
+
+def test_without_one_of_its_voyages_the_core_that_predicts_is_moved_by_what_holds_about_itself(
+    files, tracks, monkeypatch
+):
+    """Found on a boat whose added masses the two ways fit otherwise: moved by what holds about the core by
+    steps, the core of the path ran away within two seconds."""
+    seen = []
+    monkeypatch.setattr(baseline, "path_errors", lambda ship, tracks, lines, *_: seen.extend(lines) or {})
+    by_steps, by_paths = files
+    usual(by_paths, by_steps, tracks, noise_model_of(by_steps))
+    assert [float(x.model.ship.derivative("Y_v")) for x in seen] == [float(by_paths.derivative("Y_v"))]
 
 
 @pytest.mark.parametrize("kept", [{"N_r": "x"}, 3, {"N_r": float("nan")}])
