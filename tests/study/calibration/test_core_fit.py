@@ -20,7 +20,7 @@ from twin.study.calibration.core_fit import fitted_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.usual import significantly_there
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.reference.derivatives import KEPT
+from twin.study.reference.derivatives import KEPT, with_one_step_core
 from twin.study.reference.sailed import sailed
 
 
@@ -61,6 +61,15 @@ def test_the_ship_file_carries_standard_errors_and_what_remains(calibrated):
     assert len(structural["offset"]) == size and len(structural["covariance"]) == size
     assert set(structural["floor"]) == {f.name for f in fields(NoiseModel)}
     assert structural["by_regime"] and said["floor"]["share"]
+
+
+def test_a_core_that_was_fitted_along_the_path_leaves_the_one_by_steps_in_the_file(calibrated):
+    """Of what the voyages excite; by that core the next voyage is read."""
+    ship, said = calibrated
+    assert said["fitted_by"] == "paths"
+    by_steps = with_one_step_core(ship)
+    other = {n for n in ship.notes["derivatives"] if by_steps.derivative(n) != ship.derivative(n)}
+    assert {"N_rr", "K_T0"} <= other and not other.intersection(said["unexcited"])
 
 
 def test_beside_all_that_is_usual_less_is_left_than_beside_the_core_alone(calibrated):
