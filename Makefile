@@ -41,8 +41,9 @@ $(VENV)/.on-board: pyproject.toml | $(BIN)/python
 	$(PIP) --editable '.[bench]'
 	@touch $@
 
+# Python compiles what it imports; to compile all that is installed takes longer than to install it
 $(VENV)/.development: pyproject.toml | $(BIN)/python
-	$(PIP) --editable '.[dev]'
+	$(PIP) --no-compile --editable '.[dev]'
 	@touch $@ $(VENV)/.on-board
 
 $(BIN)/python:
