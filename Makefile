@@ -8,7 +8,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 # the tests start hundreds of commands: none needs to compile what another has compiled
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test lint types tests paper bench clean help
+.PHONY: demo test lint types tests budget others paper bench clean help
 
 help:  ## these words
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
@@ -16,7 +16,8 @@ help:  ## these words
 demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what its owner finds
 	$(BIN)/twin demo
 
-test: lint types tests  ## the same with the tools of development: ruff, mypy and all tests, the paper's tables in small among them
+test: lint budget  ## the same with the tools of development: ruff, mypy and all tests, the paper's tables in small among them
+	@$(MAKE) --no-print-directory --jobs types others
 
 lint: $(VENV)/.development  ## ruff
 	$(BIN)/ruff check .
@@ -24,8 +25,13 @@ lint: $(VENV)/.development  ## ruff
 types: $(VENV)/.development  ## mypy on public signatures
 	$(BIN)/mypy
 
-tests: $(VENV)/.development  ## pytest: what is inside its budget, alone; then the rest on all cores, four processes at most
+tests: budget others  ## pytest: what is inside its budget, alone; then the rest
+
+budget: $(VENV)/.development
 	$(BIN)/python -m pytest tests/bench/test_tick.py
+
+# on all cores, four processes at most
+others: $(VENV)/.development
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --ignore tests/bench/test_tick.py
 
 paper: $(VENV)/.development  ## the paper's tables in small, printed: two minutes
