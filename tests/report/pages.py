@@ -43,7 +43,7 @@ def diagnosis(name):
         "verdict": "missing",
         "sentence": "Missing: Current (97 %).",
         "missing": ["Current"],
-        "p_value_sentence": "Against healthy voyages: this one is more unusual than all 4 reference voyages.",
+        "p_value_sentence": "Against healthy voyages: this one is more unusual than each of this ship's 4 reference voyages.",
         "candidates": [
             CAUSE | {"together_sd": 6.2},
             CAUSE | {"effect": "VaryingCurrent", "parameters": curve},

@@ -42,5 +42,5 @@ def test_the_page_is_there_and_needs_no_network(folder):
 
 def test_the_corrected_ship_holds_the_effect_and_its_history(folder):
     ship = load(folder / "alma3.toml")
-    assert [type(e).__name__ for e in ship.effects] == ["HullFouling"]
+    assert "HullFouling" in {type(e).__name__ for e in ship.effects}
     assert ship.notes["history"]

@@ -121,10 +121,11 @@ def calibrate(
 ) -> Calibration:
     """Fit the core to reference voyages (nothing wrong on them; calm, or with the wind recorded).
 
-    `held_out`: voyages on which the error is measured; without any the last third is held back for that, and
-    the ship that is returned is then fitted to all. Where that error grew, the ship is returned as it was and
-    `refused` says why. `progress(text)` is told every step. DataError when a voyage cannot be used. Seconds
-    to minutes.
+    `held_out`: voyages on which the error is measured; they are never fitted, and are no reference voyages.
+    Without any the last third of three or more voyages is held back for that, and the ship that is returned
+    is then fitted to all; of one or two the last 30 % of each is held back and not fitted. Where that error
+    grew, the ship is returned as it was and `refused` says why. `progress(text)` is told every step.
+    DataError when a voyage cannot be used. Seconds to minutes.
     """
     every = [sailed(v, ship) for v in at_least_one(voyages)]
     return of_sailed(ship, every, [sailed(v, ship) for v in several(held_out)], quietly(progress))

@@ -15,7 +15,9 @@ from twin.study.reference.sailed import read_all
 
 EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:
 zigzags, circles, speed changes.
-Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error.
+Without --held-out the last third of three or more voyages is held back to measure the error, and fitted in
+the end; of one or two the last 30 % of each is held back and not fitted. What is given with --held-out is
+never fitted, and is no reference voyage.
 The standard errors, and the structural error that remains, are stored in the ship file: they keep an
 imperfect model from being called a missing effect. Exit code 3: the error on what was not used for the fit
 grew, so that no ship file is written; 4: a voyage cannot be used; 5: the ship file is not valid.

@@ -34,7 +34,7 @@ def test_a_voyage_like_others_of_the_healthy_ship_is_told_as_that():
 def test_few_references_say_how_many_more_would_tell(references, one_in, more):
     """Test: by hand, n references show 1 / (n + 1) at best, and 19 are needed for one in 20."""
     words = said(references, 0)
-    assert f"this one is more unusual than all {references} reference voyages" in words
+    assert f"this one is more unusual than each of this ship's {references} reference voyages" in words
     assert f"one healthy voyage in {one_in} is so by chance" in words and more in words
 
 

@@ -75,8 +75,8 @@ def _parts(result: dict[str, Any]) -> list[str]:
     ):
         lines += _part(result, part, why)
     return lines + [
-        f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "
-        "is allowed for and not called missing"
+        f"  {name} was measured, but too weak to be estimated: what pushes up to {as_given(HARDER)} times as "
+        "hard is allowed for and not called missing"
         for name in result["too_faint"]
     ]
 

@@ -24,7 +24,7 @@ def healthy_in_words(result: dict[str, Any]) -> str:
             f"{'was' if reach == 1 else 'were'} as unusual as {this} (p = {p})."
         )
     return (
-        f"Against healthy voyages: {this} is more unusual than all {count} reference voyages of this ship "
+        f"Against healthy voyages: {this} is more unusual than each of this ship's {count} reference voyages "
         f"(p = {p}). {_by_chance(count, asked)}"
     )
 

@@ -119,7 +119,7 @@ RULES: tuple[Rule, ...] = (
         lambda f: nameless(f) and not missed(f),
         "undecided",
         say.as_near,
-        f"{UNEXPLAINED}, but the model with the day's weather leaves no more than {num(criteria.NEARLY)} "
+        f"{UNEXPLAINED}, but the model with the day's weather leaves no more than {num(criteria.NEARLY, 3)} "
         "times the expected error",
     ),
     Rule(
@@ -203,7 +203,7 @@ RULES: tuple[Rule, ...] = (
         "undecided",
         say.astray,
         f"no cause is missing (probability {percent(criteria.SURE)} or more), but the model leaves more than "
-        f"{num(criteria.NEARLY)} times the expected error",
+        f"{num(criteria.NEARLY, 3)} times the expected error",
     ),
     Rule(
         "no_power",

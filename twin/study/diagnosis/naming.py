@@ -80,7 +80,7 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
         "weather_may_mislead",
         lambda f, c: c.belongs_to != "instrument" and f.sea and not missed(f),
         "it belongs to no instrument, a sea was measured that may move the ship, and without any cause the "
-        f"model leaves no more than {num(criteria.NEARLY)} times the expected error",
+        f"model leaves no more than {num(criteria.NEARLY, 3)} times the expected error",
     ),
     CauseRule(
         FITFUL,
