@@ -138,10 +138,10 @@ def head(rows: Sequence[Row]) -> list[str]:
     about = (
         f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream "
         "and swell on every voyage, a third of it not recorded; instruments with faults of their own; two "
-        "to six reference voyages; no force in the twin's form. Weather that is named or told as today's "
-        "never counts against an answer. Intervals: 95 % (Wilson). The rows, an answer each, are in "
-        "[fleet.csv](fleet.csv), with the facts of each in `fleet_facts.jsonl`; the last command makes the "
-        "page of them:"
+        "to six reference voyages; hulls in another form than the twin's, but for `modulus`, which is "
+        "Norrbin's like the twin's core. Weather that is named or told as today's never counts against an "
+        "answer. Intervals: 95 % (Wilson). The rows, an answer each, are in [fleet.csv](fleet.csv), with the "
+        "facts of each in `fleet_facts.jsonl`; the last command makes the page of them:"
     )
     return [
         "# The decision on ships of many forms",

@@ -1,6 +1,7 @@
 """Instruments first: a compass that is slow is proved without the ship, and only then a candidate; and what
 kinematics know to be as on the reference voyages is no change."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -108,6 +109,18 @@ def test_what_kinematics_know_to_be_as_on_the_references_is_no_change(bias, seen
     (True), as suspected or too small to say (None), as neither (False)."""
     share = reached(*hypothesis(bias), "HeadingBias", says(seen))
     assert share is None if expected is None else (share >= 0.25) == expected
+
+
+def test_reference_files_of_one_name_in_several_folders_stay_several():
+    """Test: seen 0.0125 rad, between what two references say and the third; then all three are called `log`.
+    Expected: the same share."""
+    apart, alike = says(0.0125), says(0.0125)
+    number = alike.record.numbers["A"]
+    same = tuple(replace(v, voyage="log") for v in number.voyages)
+    alike.record = replace(alike.record, numbers={"A": replace(number, voyages=same)})
+    asked = hypothesis(0.03)
+    shares = [reached(*asked, "HeadingBias", kinematics) for kinematics in (apart, alike)]
+    assert shares[0] == shares[1] and 0.0 < shares[0] < 1.0
 
 
 def test_what_kinematics_hardly_tell_contradicts_nothing():

@@ -139,7 +139,7 @@ def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, v
         "not_judged"
     ]
     assert any(
-        "Wind cannot be judged: no true_wind_speed_mps and no" in line for line in terminal_lines(result)
+        "Wind cannot be judged without true_wind_speed_mps and" in line for line in terminal_lines(result)
     )
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bench.small_boats import ship_of
+from twin import calibrate, diagnose
 from twin.errors import DataError
 from twin.physics.model import Model
 from twin.recording.checks import losses, of_voyages
@@ -96,3 +97,16 @@ def test_the_voyage_of_another_vessel_is_told_by_what_drives_it(make, kvlcc2):
     bare = without_controls(voyage, -1.0, 1e6, ("propeller_rate_rpm",))
     with pytest.raises(DataError, match=r"The voyage has no propeller_rate_rpm\. Check the map"):
         track(bare, kvlcc2)
+
+
+@pytest.mark.parametrize("verb, known_s", [(diagnose, 40.0), (diagnose, 20.0), (calibrate, 20.0)])
+def test_a_voyage_whose_controls_are_never_there_for_long_is_refused_by_name(tanker, voyages, verb, known_s):
+    """Test: rudder and shaft are known for so long in every 300 s. Expected: one line that says what to record,
+    where a diagnosis has nothing to predict, or the filter nothing to read."""
+    v = voyages["nothing"]
+    gone = v.time_s % 300.0 > known_s
+    few = v.with_rows(
+        v.time_s, {n: np.where(gone, np.nan, x) if n in CONTROLS else x for n, x in v.columns.items()}
+    )
+    with pytest.raises(DataError, match=r"nowhere there together for \d+ s without a gap"):
+        verb(tanker, few)

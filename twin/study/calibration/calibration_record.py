@@ -87,9 +87,8 @@ def remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of it is in the ship file as this calibration found it."""
-    there = [e for e in ship.effects if type(e) in core.searched]
-    return name in (type(e).__name__ for e in there) or (
-        core.antenna is not None and core.antenna in ship.effects
+    return any(
+        type(e).__name__ == name and (type(e) in core.searched or e == core.antenna) for e in ship.effects
     )
 
 

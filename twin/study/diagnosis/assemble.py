@@ -13,6 +13,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import MOST_SEGMENTS, ODDS, ODDS_UNNAMED, ODDS_WEATHER, Case, settle
+from twin.study.diagnosis.open_loop_check import horizon_s
 from twin.study.estimation.columns import (
     FORM,
     ROUGH,
@@ -40,9 +41,11 @@ from twin.study.reference.nuisance import (
 from twin.study.reference.reading import read_lines
 from twin.study.reference.sailed import samples_hash
 from twin.study.reference.seaway import swung
+from twin.study.reference.structural_table import positive, read_from
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.reference.weather_baseline import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
+from twin.study.track.segments import long_enough, longest_s, too_short
 from twin.study.track.track import Track, track
 
 Progress = Callable[[str], None]
@@ -54,12 +57,15 @@ def assemble(
     references: Sequence[Voyage] = (),
     progress: Progress = lambda text: None,
 ) -> Case:
-    """Everything `search` needs; DataError when the voyages cannot be used at all."""
+    """Everything `search` needs. DataError: the voyages cannot be used at all; SettingsError: the ship file
+    does not hold a calibration as it was written."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")
     _refuse_twice(voyages)
     progress("smoothing tracks")
-    return of_tracks([swung(track(v, ship), Model.of(ship)) for v in voyages], ship, references, progress)
+    tracks = [long_enough(track(v, ship), ship) for v in voyages]
+    _refuse_pieces(tracks, Model.of(ship))
+    return of_tracks([swung(t, Model.of(ship)) for t in tracks], ship, references, progress)
 
 
 def _refuse_twice(voyages: Sequence[Voyage]) -> None:
@@ -70,6 +76,13 @@ def _refuse_twice(voyages: Sequence[Voyage]) -> None:
         if samples in known:
             raise DataError(f"{one.name}: is the same voyage as {known[samples]}. Give each voyage once.")
         known[samples] = one.name
+
+
+def _refuse_pieces(tracks: Sequence[Track], model: Model) -> None:
+    """DataError where no voyage is whole for as long as predictions of it are judged."""
+    if all(longest_s(t) < horizon_s(t, model) for t in tracks):
+        least = min(horizon_s(t, model) for t in tracks)
+        raise too_short(", ".join(t.name for t in tracks), least)
 
 
 def of_tracks(
@@ -179,7 +192,9 @@ def _of_references(
     noise_model = noise_model_of(ship, "beside") or path
     progress("reading the reference voyages")
     usual = usual_unknowns(model, catalogue)
-    lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
+    lines = read_lines(
+        [swung(long_enough(track(v, ship), ship), model) for v in references], model, usual, catalogue
+    )
     if noise_model_of(ship) is None:
         progress("estimating the noise model")
         path = structural_noise(_of_core(lines, usual), core_unknowns(model))
@@ -194,13 +209,16 @@ def _felt_before(
     """How hard measured weather pushed it on the reference voyages, or on those of its calibration."""
     if references:
         return strengths([track(v, model.ship) for v in references], model, catalogue)
-    return dict(model.ship.notes.get("structural", {}).get("weather", {}))
+    with read_from(model.ship, "weather"):
+        kept = model.ship.notes.get("structural", {}).get("weather", {})
+        return {name: float(strength) for name, strength in kept.items()}
 
 
 def _temper(ship: Ship) -> float:
     """How much less than its likelihood a voyage tells, beside all that is usual on this ship."""
     notes = ship.notes.get("structural", {})
-    return float(notes.get("temper_beside", notes.get("temper", TEMPER)))
+    with read_from(ship, "temper"):
+        return positive(notes.get("temper_beside", notes.get("temper", TEMPER)))
 
 
 def _of_core(lines: Sequence[Linear], unknowns: Sequence[Unknown]) -> list[Linear]:

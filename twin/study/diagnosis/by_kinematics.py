@@ -7,6 +7,7 @@ proves it alone. What kinematics ask for, and is another than on the references,
 whole search. It brings no evidence of its own there: the same readings speak again, with the ship's model
 beside them. And a number that kinematics know to be as it always was is not one that changed."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -123,7 +124,7 @@ def reached(case: Case, found: Found, name: str, asked: AskedKinematics) -> floa
     """
     if asked.record is None:
         return None
-    factor, mine, theirs, known = 0.0, 0.0, dict[str, float](), effects_of_readings()
+    factor, mine, theirs, known = 0.0, 0.0, dict[tuple[str, int], float](), effects_of_readings()
     for number in asked.comparable:
         effect, usual = known.get(number), asked.record.numbers[number]
         if effect is None or effect.__name__ != name or len(usual.distances) < 2:
@@ -134,8 +135,11 @@ def reached(case: Case, found: Found, name: str, asked: AskedKinematics) -> floa
         d, variance = now[0] - usual.value, now[1] ** 2 + usual.next_sd**2
         factor += _log_normal(d, variance) - _log_normal(d - D, variance + sd_D**2)
         mine = max(mine, abs(d) / float(np.sqrt(variance)))
+        alike = Counter[str]()  # two files in two folders may have one name
         for v, far in zip(usual.voyages, usual.distances, strict=True):
-            theirs[v.voyage] = max(far, theirs.get(v.voyage, 0.0))
+            alike[v.voyage] += 1
+            place = v.voyage, alike[v.voyage]
+            theirs[place] = max(far, theirs.get(place, 0.0))
     if factor <= CLEAR:
         return None
     return float(np.mean([far >= mine for far in theirs.values()]))

@@ -23,7 +23,7 @@ from twin.study.diagnosis.further import with_further
 from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
-from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import (
     alike,
     capped,
@@ -48,7 +48,7 @@ class Diagnosed:
 
     result: dict[str, Any]
     case: Case
-    found: Mapping[tuple[str, ...], Found]
+    found: Mapping[Sets, Found]
 
 
 def diagnose(
@@ -72,7 +72,7 @@ def diagnose(
         **_decided(told),
         "candidates": listed,
         "rivals": rivals(told.weighed, found),
-        "resembles": [_candidate(told, n, told.weights.unnamed[n]) for n in told.resembling],
+        "resembles": [c for n in told.resembling if (c := _candidate(told, n, told.weights.unnamed[n]))],
         "answer": {
             "not_named": told.decision.not_named,
             "lasting": [n for n in told.decision.missing if case.catalogue[n].lasts()],
@@ -170,15 +170,11 @@ def _healthy(found: Healthy | None) -> dict[str, Any]:
 
 
 def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any]:
-    """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the
-    best set that holds them."""
+    """One effect with its numbers; empty where no set that holds it was relinearised."""
     case, weighed, found, considered = told.case, told.weighed, told.found, told.considered
-    sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
-    sets = sets or [s for s in found if name in s]  # where it stands at a size that cannot be
-    sets.sort(key=lambda s: name not in told.decision.missing or s != told.shown)
-    if not sets:
+    if (chosen := _where_told(told, name)) is None:
         return {}
-    best = found[sets[0]]
+    best = found[chosen]
     numbers = parameters(case, sized(case, best), name)
     return {
         "effect": name,
@@ -187,7 +183,8 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         if name in case.weather
         else of_cause(considered.facts, told.decision, name, posterior),
         "posterior": capped(posterior),
-        "on_references": _on_references(considered, name),
+        # share of the reference voyages on which kinematics had as much of an instrument's fault
+        "on_references": next((c.reached for c in considered.facts.causes if c.effect == name), None),
         "parameters": numbers,
         "together_sd": joint_significance(case, best, name, numbers)
         if name in told.decision.missing
@@ -200,24 +197,31 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         else best.open_loop_error_m,
         "error_floor": best.expected_error_m,
         "together_with": [n for n in best.hypothesis.effects if n != name],
-        "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
+        "cannot_be_told_from": list(
+            considered.like[name] if name in considered.like else alike(case, weighed, name)
+        ),
         "says": case.catalogue[name].sentence(case.model.ship),
     }
 
 
-def _on_references(considered: Considered, name: str) -> float | None:
-    """Share of the reference voyages on which kinematics had as much of an instrument's fault."""
-    return next((c.reached for c in considered.facts.causes if c.effect == name), None)
+def _where_told(told: SearchAnswer, name: str) -> Sets | None:
+    """The set with whose numbers an effect is told: the answer where it is named, else the likeliest that was
+    relinearised and holds it."""
+    sets = [h.effects for h in told.weighed if name in h.effects and h.effects in told.found]
+    sets = sets or [s for s in told.found if name in s]  # where it stands at a size that cannot be
+    if name in told.decision.missing and told.shown in sets:
+        return told.shown
+    return sets[0] if sets else None
 
 
-def _without(case: Case, found: Mapping[tuple[str, ...], Found], considered: Considered, name: str) -> float:
+def _without(case: Case, found: Mapping[Sets, Found], considered: Considered, name: str) -> float:
     """Open-loop error without a cause: with the day's weather alone; without a kind of weather: of the model
     as it is [m]."""
     return found[() if name in case.weather else considered.base].open_loop_error_m
 
 
 def _weather(
-    case: Case, weighed: Sequence[Any], found: Mapping[tuple[str, ...], Found], name: str, probability: float
+    case: Case, weighed: Sequence[Any], found: Mapping[Sets, Found], name: str, probability: float
 ) -> dict[str, Any]:
     """One kind of today's water and weather, with its numbers, as it stands in the likeliest set that holds
     it; or how restless the water is."""
@@ -268,8 +272,8 @@ def _next(
     if rivals is None:
         return None
     progress(f"simulating manoeuvres that would tell {rivals[0]} from {rivals[1]}")
-    sets = [s for s in found if rivals[0] in s]
-    z = found[sets[0]].posterior.z if sets else np.ones(len(case.effects))
+    chosen = _where_told(told, rivals[0])
+    z = np.ones(len(case.effects)) if chosen is None else found[chosen].posterior.z
     return next_manoeuvre(case, case.model, *rivals, z)
 
 

@@ -57,12 +57,10 @@ def nothing(result: Result) -> str:
 
 def resembles(result: Result) -> str:
     """Something is missing that resembles an effect."""
-    like, near = result["resembles"][0], _near(result)
-    beside = f" Beside it: {' with '.join(near)}." if near else ""
-    return (
-        "Something is missing that is not in the catalogue of effects. It resembles "
-        f"{like['effect']}: {like['says']}{beside}"
-    )
+    near = _near(result)
+    resembling = [f" It resembles {like['effect']}: {like['says']}" for like in result["resembles"][:1]]
+    beside = [f" Beside it: {' with '.join(near)}."] if near else []
+    return "".join(["Something is missing that is not in the catalogue of effects.", *resembling, *beside])
 
 
 def pushed(result: Result) -> str:

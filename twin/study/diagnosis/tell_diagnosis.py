@@ -33,8 +33,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     if result["next_manoeuvre"]:
         lines += ["", to_sail(result["next_manoeuvre"])]
     lines += [
-        f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded."
-        for n in result["not_judged"]
+        f"{n['effect']} cannot be judged without {' and '.join(n['lacks'])}." for n in result["not_judged"]
     ]
     lines += [
         f"{n} was no stronger than on the reference voyages: it is allowed for, and not called missing."

@@ -21,6 +21,7 @@ from twin.study.estimation.linear import Linear
 from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.between import SHARES, BetweenVoyages, doubted, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
+from twin.study.reference.structural_table import read_from
 
 HEALTHY_WIDTHS = (
     0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
@@ -148,7 +149,13 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
-    """What the ship file's calibration left open; where it says nothing, the priors."""
+    """What the ship file's calibration left open; where it says nothing, the priors. SettingsError: its file
+    does not hold it as it was written."""
+    with read_from(model.ship, "offset and covariance"):
+        return _from_ship(model, unknowns)
+
+
+def _from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     stored = model.ship.notes.get("structural", {})
     # added when it was calibrated already
     since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))
@@ -164,9 +171,13 @@ def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     if mine:
         theirs = [place[unknowns[i].label] for i in mine]
         sd = np.array([unknowns[i].sd for i in mine])
-        covariance = np.array(stored["covariance"])[np.ix_(theirs, theirs)] / np.outer(sd, sd)
+        covariance = np.array(stored["covariance"], float)[np.ix_(theirs, theirs)] / np.outer(sd, sd)
+        mean[mine] = np.array(stored["offset"], float)[theirs] / sd
+        if not np.all(np.isfinite(covariance)) or not np.all(np.isfinite(mean)):
+            raise ValueError("not finite")
+        if np.any(np.diag(covariance) < 0.0):
+            raise ValueError("a variance below zero")
         information[np.ix_(mine, mine)] = np.linalg.inv(covariance + 1e-9 * np.eye(len(mine)))
-        mean[mine] = np.array(stored["offset"])[theirs] / sd
     return Nuisance(unknowns, information, information @ mean, stored.get("daily", {}))
 
 

@@ -30,9 +30,9 @@ from typing import Any
 import numpy as np
 from scipy.special import gammaln, stdtrit
 
-from twin.errors import SettingsError
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
+from twin.study.reference.structural_table import read_from
 from twin.study.track.track import READINGS
 
 CHANNELS = ("along", "across", *READINGS[2:])
@@ -159,7 +159,7 @@ def of_ship(ship: Ship) -> PathError | None:
     table = ship.notes.get("structural", {}).get("path_error")
     if not table:
         return None
-    try:
+    with read_from(ship, "path_error"):
         read, told = (
             [CHANNELS.index(name) for name in table["channels"]],
             np.array(table["covariance"], float),
@@ -176,14 +176,10 @@ def of_ship(ship: Ship) -> PathError | None:
             {name: (float(low), float(high)) for name, (low, high) in table["sailed"].items()},
             np.array(table["level"], float) if "level" in table else None,
         )
-        shapes = {found.covariance.shape[0], found.alike.size, found.mean.shape[0]}
+        level = [] if found.level is None else [found.level]
+        shapes = {len(of) for of in (covariance, found.alike, found.mean, *level)}
         if shapes != {found.horizons_s.size} or not found.horizons_s.size:
             raise ValueError("its tables differ in length")
-    except (TypeError, ValueError, KeyError) as error:
-        raise SettingsError(
-            f"{ship.name}: [structural] path_error in the ship file is damaged ({error}). "
-            "Calibrate the ship again."
-        ) from None
     return found
 
 

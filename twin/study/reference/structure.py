@@ -6,12 +6,11 @@ the core's own uncertainty integrated out (cross-validated likelihood; Rasmussen
 found by coordinate ascent on a geometric grid."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
-from twin.errors import SettingsError
 from twin.physics.ship import Ship
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.filters import GROUND
@@ -19,6 +18,7 @@ from twin.study.estimation.fit import evidence
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.reference.path_error import of_ship
+from twin.study.reference.structural_table import read_from
 
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
@@ -49,15 +49,14 @@ def noise_model_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
     table = ship.notes.get("structural", {}).get(name)
     if not table:
         return None
-    try:
+    with read_from(ship, name):
         rest: dict[str, Any] = {
             key: _by_axis(v) if key == "white" else float(v) for key, v in table.items() if key != "share"
         }
-        return NoiseModel(_by_axis(table["share"]), **rest)
-    except (TypeError, ValueError, KeyError) as error:
-        raise SettingsError(
-            f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate it again."
-        ) from None
+        found = NoiseModel(_by_axis(table["share"]), **rest)
+        if not np.all(np.isfinite(np.hstack(list(asdict(found).values())))):
+            raise ValueError("not finite")
+    return found
 
 
 def once_off(ship: Ship, key: str, horizon_s: np.ndarray) -> np.ndarray:

@@ -7,9 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from twin.errors import DataError
+from twin.physics.ship import Ship
 from twin.study.track.track import Track
 
 SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of its lengths
+FEWEST_STEPS = 24  # of the grid, of which a segment may be
 BEFORE_LENGTHS, AFTER_LENGTHS = 4, 2  # and so much of what is about it is kept
 
 
@@ -23,10 +26,31 @@ def segments(tracks: Sequence[Track], time_s: float, most: int | None = None) ->
         for start, stop in zip(edges[::2], edges[1::2], strict=True):
             pieces = max(1, round((stop - start) / length))
             cuts = np.linspace(start, stop, pieces + 1).astype(int)
-            out += [(i, int(a), int(b)) for a, b in pairwise(cuts) if b - a >= 24]
+            out += [(i, int(a), int(b)) for a, b in pairwise(cuts) if b - a >= FEWEST_STEPS]
     if most is not None and len(out) > most:
         out = [out[i] for i in np.linspace(0, len(out) - 1, most).astype(int)]
     return out
+
+
+def long_enough(track: Track, ship: Ship) -> Track:
+    """The same track. DataError: it is nowhere whole for long enough to be filtered."""
+    if segments([track], float(ship.scale("time"))):
+        return track
+    raise too_short(track.name, FEWEST_STEPS * track.h)
+
+
+def longest_s(track: Track) -> float:
+    """For how long it is whole at most [s]."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], track.whole, [False]]).astype(int)))
+    return track.h * float(np.max(edges[1::2] - edges[::2], initial=0))
+
+
+def too_short(names: str, least_s: float) -> DataError:
+    """What is said of a voyage that is nowhere whole for so long [s]."""
+    return DataError(
+        f"{names}: rudder, shaft and readings are nowhere there together for {least_s:.0f} s without a gap: "
+        "nothing can be judged from it. Record them without gaps."
+    )
 
 
 def read_parts(tracks: Sequence[Track], time_s: float, most: int | None) -> list[Track]:

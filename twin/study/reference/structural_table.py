@@ -1,0 +1,28 @@
+"""What a calibration left in the ship file under [structural], and one line where it is damaged."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from twin.errors import SettingsError
+from twin.physics.ship import Ship
+
+
+@contextmanager
+def read_from(ship: Ship, part: str) -> Iterator[None]:
+    """While a part of the table is read. SettingsError: the file does not hold it as it was written."""
+    try:
+        yield
+    except (TypeError, ValueError, KeyError, IndexError, AttributeError) as error:
+        raise SettingsError(
+            f"{ship.name}: [structural] {part} in the ship file is damaged ({error}). Calibrate it again."
+        ) from None
+
+
+def positive(value: object) -> float:
+    """A finite number above zero. ValueError, TypeError: it is none."""
+    number = float(value)  # type: ignore[arg-type]
+    if not 0.0 < number < np.inf:
+        raise ValueError(f"{value} is not above zero")
+    return number
