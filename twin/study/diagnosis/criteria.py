@@ -1,7 +1,7 @@
 """The numbers that decide, each with its unit and the question that it answers.
 
 NAMED, NEARLY, SIGNIFICANT and USUAL were fitted with families of ships held out (bench/fleet,
-docs/results/judgement.md); the others are conventions that no family asked to move. The table in
+docs/results/judgement.md); the others are conventions. The table in
 docs/diagnosis.md is made of these lines (docs/decision_page.py).
 """
 
@@ -13,11 +13,11 @@ LOST = 0.5  # of something without a name, from which no name is given: likelier
 # log Bayes factor [natural log]
 CLEAR = 3.0  # 20 to 1 (Kass & Raftery 1995): by which a change is asked for, or two effects told apart
 # ratios of open-loop errors [1]
-NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (fitted: 1.68 to 1.82)
+NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (as fitted)
 MOSTLY = 0.5  # share of the error without it that an explanation may leave although more is missing
 BETTER = 0.05  # share by which a force must reduce the open-loop error; less is scatter
 # others
-SIGNIFICANT = 5.0  # standard deviations of an instrument's numbers from none (fitted: 4 to 6)
+SIGNIFICANT = 5.0  # standard deviations of an instrument's numbers from none (families ask for 6)
 CHANGED = 2.0  # standard deviations of its form by which a number must differ from the ship file's (95 %)
 USUAL = 0.25  # share of the reference voyages with as high a score, from which a cause is unchanged (fitted)
 POWER = 0.75  # share of the causes that would have shown, before nothing is said to be missing
