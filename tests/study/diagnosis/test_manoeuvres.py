@@ -49,7 +49,7 @@ def test_fouling_and_a_worn_propeller_are_told_apart_where_the_speed_changes(cas
     z = np.ones(len(case.effects))
     advice = next_manoeuvre(case, case.model, "HullFouling", "PropellerWear", z)
     scores = {
-        name: separation(case, case.model, t, "HullFouling", "PropellerWear", z)
+        name: separation(case, t, "HullFouling", "PropellerWear", z)
         for name, t in sailed(case, case.model).items()
     }
     assert advice is not None

@@ -35,7 +35,7 @@ def searched_parts(ship: Ship) -> tuple[type[Effect], ...]:
 class Core:
     """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
 
-    tracks: list[Track]  # with what waves do to it taken for that
+    tracks: list[Track]  # with the swing in waves, where they showed
     model: Model
     derivatives: list[Derivative]
     # of the ship file; gears and wind among them if the voyages asked for these

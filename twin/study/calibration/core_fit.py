@@ -48,7 +48,7 @@ class RoughCore:
     """A core fitted before the noise model is known."""
 
     ship: Ship
-    tracks: list[Track]  # with what waves do to it taken for that
+    tracks: list[Track]  # with the swing in waves, where they showed
     fit: Fit
     curve: tuple[Unknown, ...]  # of the compass's deviation, fitted beside it
     asked: tuple[Unknown, ...]  # of that deviation, where the voyages clearly ask for it and it was not

@@ -38,7 +38,7 @@ def usual(ship: Ship, by_steps: Ship, tracks: Sequence[Track], noise_model: Nois
     references = known_from(lines, unknowns, beside, temper, centres)
     nuisance, between = references.nuisance(), references.between
     off = one_step_core(ship, by_steps)
-    if off:  # without one of its voyages it would be elsewhere by what holds about itself
+    if off:  # how far leaving a voyage out moves a core is told by the equations about that core
         unknowns, lines = _linearised(ship, tracks)
     path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, references.scatter)
     sd = np.array([u.sd for u in nuisance.unknowns])

@@ -28,8 +28,9 @@ MANOEUVRES = (
 
 def refusal(ship: Ship, held_out: Sequence[Mapping[str, Any]], unexcited: Sequence[str]) -> str:
     """Why the uncalibrated numbers are kept: which horizon, before and after, and what to sail; "" when the
-    error did not grow. `held_out`: entries of --json."""
-    judged = [e for e in held_out if e["windows"] and e["position_m"] is not None]
+    error did not grow. `held_out`: by horizon, the errors after the fit and before it, and those of
+    predictions that know nothing (held_out.knowing_nothing)."""
+    judged = [e for e in held_out if e["windows"]]
     if not judged:
         return ""
     away = [e for e in judged if ran_away(ship, e)]

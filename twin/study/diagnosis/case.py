@@ -111,7 +111,7 @@ class Case:
         self, lines: Sequence[Linear], noise_models: Sequence[NoiseModel], at: np.ndarray | None = None
     ) -> list[Reduced]:
         """For each noise model, what these lines say of the effects alone; `at` (Q,) in prior widths: where
-        they were linearised."""
+        they were linearised. Of nine noise models and more (`settle`) half of the segments tell."""
         normals = innovate(lines, noise_models, MOST_SEGMENTS // (1 + len(noise_models) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 

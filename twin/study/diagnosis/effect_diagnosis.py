@@ -57,8 +57,8 @@ def diagnose(
     references: Sequence[Voyage] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> Diagnosed:
-    """Judge all candidates jointly on these voyages. DataError: a sign, unit or frame of one is proved
-    wrong."""
+    """Judge all candidates jointly on these voyages. DataError: there is none, one is given twice or too
+    short, or a sign, unit or frame of one is proved wrong; SettingsError: the ship file is damaged."""
     checks = of_voyages([*voyages, *references], ship)
     case = assemble(voyages, ship, references, progress)
     told = with_further(

@@ -195,7 +195,7 @@ def inputs(model: Model, manoeuvre: Manoeuvre, helm: HelmOrder, delta: float, po
     return {"orders": actuator_orders(model.ship, delta, power, side, alone)}
 
 
-def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
+def separation(case: Case, track: Track, first: str, second: str, z: np.ndarray) -> float:
     """Log odds that this track would be expected to give for `first` (at z (Q,) prior widths) against
     `second`."""
     here, _ = case.linearised.without_inputs(track.missing())
@@ -228,7 +228,7 @@ def next_manoeuvre(
     case: Case, model: Model, first: str, second: str, z: np.ndarray
 ) -> dict[str, object] | None:
     """The manoeuvre that tells these two apart best, or None when none would. `z` (Q,) in prior widths."""
-    scores = {name: separation(case, model, t, first, second, z) for name, t in sailed(case, model).items()}
+    scores = {name: separation(case, t, first, second, z) for name, t in sailed(case, model).items()}
     best = max(scores, key=lambda name: scores[name], default="")
     if not best or scores[best] < 1.0:
         return None

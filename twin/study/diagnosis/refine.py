@@ -232,7 +232,8 @@ def _refined(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypo
 
 
 def form_share(case: Case, chosen: Sets, top: BestPlace) -> float:
-    """The share of DOUBTS under which the voyages are most probable."""
+    """The share of DOUBTS (or of IRREGULAR, for what comes and goes) under which the voyages are most
+    probable."""
     shares = (*IRREGULAR, *DOUBTS) if any(case.catalogue[name].irregular for name in chosen) else DOUBTS
     reduced = case.reduced(
         top.lines, [case.scenarios([top.best.scenario], share)[0] for share in shares], top.at

@@ -30,7 +30,7 @@ KINDS = 3  # of weather at once in the linear pass
 DAYS = 2  # sets of weather beside which every pair of causes is asked
 ROUNDS = 20  # hypotheses relinearised at their estimates, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
-# and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too
+# so many more single effects when nothing plain was found, and sets of one cause more where that leaves too
 # much
 LAST = 6
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is relinearised at its estimate
@@ -117,7 +117,7 @@ class Hypotheses:
 
     def __init__(self, case: Case, scenarios: dict[str, Reduced]) -> None:
         self.case, self.scenarios = case, scenarios
-        self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
+        self.wide = False  # whether one cause more is judged, because the best so far leaves too much
         self.asked: OpenLoopCheck | None = None  # where those that could be the answer lead it
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
         for scenario, reduced in scenarios.items():
