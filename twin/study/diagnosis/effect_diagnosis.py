@@ -172,7 +172,7 @@ def _healthy(found: Healthy | None) -> dict[str, Any]:
 def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any]:
     """One effect with its numbers; empty where no set that holds it was relinearised."""
     case, weighed, found, considered = told.case, told.weighed, told.found, told.considered
-    if (chosen := _where_told(told, name)) is None:
+    if (chosen := _own_set(told, name)) is None:
         return {}
     best = found[chosen]
     numbers = parameters(case, sized(case, best), name)
@@ -204,7 +204,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
     }
 
 
-def _where_told(told: SearchAnswer, name: str) -> Sets | None:
+def _own_set(told: SearchAnswer, name: str) -> Sets | None:
     """The set with whose numbers an effect is told: the answer where it is named, else the likeliest that was
     relinearised and holds it."""
     sets = [h.effects for h in told.weighed if name in h.effects and h.effects in told.found]
@@ -272,7 +272,7 @@ def _next(
     if rivals is None:
         return None
     progress(f"simulating manoeuvres that would tell {rivals[0]} from {rivals[1]}")
-    chosen = _where_told(told, rivals[0])
+    chosen = _own_set(told, rivals[0])
     z = np.ones(len(case.effects)) if chosen is None else found[chosen].posterior.z
     return next_manoeuvre(case, case.model, *rivals, z)
 
