@@ -180,6 +180,12 @@ def sail(
     return Voyage(name, t, columns, {"start_time_utc": f"2026-05-0{1 + seed % 9}T08:00:00Z"})
 
 
+def seldom(voyage: Voyage, every: int = 2) -> Voyage:
+    """The voyage of which only one sample in so many was logged."""
+    columns = {name: x[::every] for name, x in voyage.columns.items()}
+    return voyage.with_rows(voyage.time_s[::every], columns)
+
+
 @pytest.fixture(scope="session")
 def make():
     """The function that makes a voyage."""
