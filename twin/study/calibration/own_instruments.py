@@ -20,7 +20,7 @@ from twin.study.calibration.usual import LASTING_SE
 from twin.study.instruments.corrections import effects_of_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
 from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
-from twin.study.instruments.on_references import NOTE, OnReferences, on_references
+from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
 from twin.study.reference.sailed import Sailed
 
@@ -34,10 +34,11 @@ READINGS_BY_SPAN: WeakKeyDictionary[Voyage, dict[tuple[float, float], Readings]]
 
 @dataclass(frozen=True)
 class OwnInstruments:
-    """The ship with its instruments as the references establish them, and the numbers that became a part of
-    it, by effect and parameter."""
+    """The ship with its instruments as the references establish them, what is kept of each voyage (None:
+    nothing could be asked), and the numbers that became a part of the ship, by effect and parameter."""
 
     ship: Ship
+    record: KinematicRecord | None
     written: dict[str, dict[str, dict[str, Any]]]
 
 
@@ -46,7 +47,7 @@ def own_instruments(fitted: Sequence[Sailed], ship: Ship) -> OwnInstruments:
     try:
         asked = on_references([_readings(s) for s in fitted], float(ship.L_pp))
     except DataError:
-        return OwnInstruments(_without_record(ship), {})
+        return OwnInstruments(_without_record(ship), None, {})
     written: dict[str, dict[str, dict[str, Any]]] = {}
     known = effects_of_readings()
     for fault in established(asked):
@@ -66,7 +67,7 @@ def own_instruments(fitted: Sequence[Sailed], ship: Ship) -> OwnInstruments:
                 "between": u.between,
             }
     after = replace(ship, notes={**ship.notes, NOTE: plain(asked.record.entry())})
-    return OwnInstruments(after, written)
+    return OwnInstruments(after, asked.record, written)
 
 
 def established(asked: OnReferences) -> list[str]:
