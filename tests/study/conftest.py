@@ -85,8 +85,8 @@ def case_of(tanker, voyages):
 @pytest.fixture(scope="session")
 def searched(case_of):
     """What `search` finds in that case, by the voyage's name: (weighed, found), once, and lists of one's own."""
-    told = cache(lambda name: search(case_of(name))[:2])
-    return lambda name: (list(told(name)[0]), dict(told(name)[1]))
+    told = cache(lambda name: search(case_of(name)))
+    return lambda name: (list(told(name).weighed), dict(told(name).found))
 
 
 @pytest.fixture(scope="session")

@@ -119,7 +119,7 @@ def test_an_effect_and_a_part_of_it_are_no_pair(case):
     assert np.isfinite(case.log_prior(("VaryingCurrent",), "usual")) and np.isfinite(
         case.log_prior(("Current", "HullFouling"), "usual")
     )
-    assert ("Current", "VaryingCurrent") not in {h.effects for h in search(case)[0]}
+    assert ("Current", "VaryingCurrent") not in {h.effects for h in search(case).weighed}
 
 
 def test_beside_a_stream_that_changes_a_steady_one_is_judged_too(case):
@@ -175,8 +175,8 @@ def test_what_any_day_brings_is_no_news_where_it_stands_today(case_of):
         held.judge(("Current",))
         nothing[name] = max(h.log_weight for h in held.weighed() if not h.effects) - before
     assert nothing["knows"] > 1.0 and nothing["knows not"] == 0.0
-    weighed, found, _ = search(usual)
-    assert weights(usual, weighed, found).weather["Current"] < SURE
+    told = search(usual)
+    assert weights(usual, told.weighed, told.found).weather["Current"] < SURE
 
 
 @pytest.mark.parametrize("c_d, hollow", [(0.0, True), (0.1, False)])

@@ -27,6 +27,6 @@ def test_an_effect_that_the_ship_had_is_put_back_to_what_it_was(worn):
 
 def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(case_of):
     case = case_of("IceLike")
-    weighed, found, seen = search(case)
+    case, weighed, found, seen, _ = search(case)
     facts = consider(case, weighed, found, seen, weights(case, weighed, found)).facts
     assert decide(facts).verdict == "unknown"

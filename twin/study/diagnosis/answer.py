@@ -10,6 +10,7 @@ from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics,
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.consider import Considered, consider
 from twin.study.diagnosis.decision import Decision, decide
+from twin.study.diagnosis.open_loop_check import OpenLoopCheck
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.search import search
 from twin.study.diagnosis.verdict import Weights, weights
@@ -26,6 +27,7 @@ class SearchAnswer:
     weighed: Sequence[Hypothesis]  # the likeliest first
     found: Mapping[Sets, Found]
     seen: Mapping[str, bool]  # whether each candidate, had it its plausible size, would have shown
+    path: OpenLoopCheck  # where those that could be the answer lead the ship
     weights: Weights
     considered: Considered
     decision: Decision
@@ -62,15 +64,15 @@ def answer(
     progress: Progress = lambda text: None,
 ) -> SearchAnswer:
     """Search, facts and decision; where an instrument is suspected, beside what kinematics say of it."""
-    weighed, found, seen = search(case, progress)
-    w, asked = weights(case, weighed, found), None
-    if instrument_suspected(case, w.best.effects):
+    searched, asked = search(case, progress), None
+    if instrument_suspected(case, searched.weighed[0].effects):
         progress("checking the instruments against each other, without the ship model")
         asked = kinematics(voyages, ship)
         if asked and (wanted := suspected_instruments(case, asked)):
             case = of_tracks(case.tracks, ship, references, progress, wanted)
-            weighed, found, seen = search(case, progress)
-            w = weights(case, weighed, found)
+            searched = search(case, progress)
     progress("computing the facts")
+    case, weighed, found, seen, path = searched
+    w = weights(case, weighed, found)
     considered = consider(case, weighed, found, seen, w, asked)
-    return SearchAnswer(case, weighed, found, seen, w, considered, decide(considered.facts))
+    return SearchAnswer(case, weighed, found, seen, path, w, considered, decide(considered.facts))

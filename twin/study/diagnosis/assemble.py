@@ -65,7 +65,8 @@ def assemble(
     progress("smoothing tracks")
     tracks = [long_enough(track(v, ship), ship) for v in voyages]
     _refuse_pieces(tracks, Model.of(ship))
-    return of_tracks([swung(t, Model.of(ship)) for t in tracks], ship, references, progress)
+    about = Model.of(with_one_step_core(ship))
+    return of_tracks([swung(t, about) for t in tracks], ship, references, progress)
 
 
 def _refuse_twice(voyages: Sequence[Voyage]) -> None:

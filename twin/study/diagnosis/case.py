@@ -52,6 +52,8 @@ ODDS = 0.03  # of an effect about which nothing is known
 ODDS_UNNAMED = 0.01  # of what is no member of the catalogue
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
 ODDS_WEATHER = 1.0  # of each kind of water and weather on a voyage: as likely there as not
+# log odds that an effect of plausible size would have to show, or the data could not have seen it
+VISIBLE = 4.0
 
 
 @dataclass(frozen=True)
@@ -157,6 +159,12 @@ class Case:
             nuisance=along.nuisance,
         ), kept
 
+    def weakened(self, seen: Mapping[str, bool]) -> "Case":
+        """The same with little odds for what needs a measured cause and would not have shown (`seen`) with
+        its plausible size."""
+        weak = [name for name, shows in seen.items() if not shows and self.catalogue[name].needs]
+        return replace(self, odds=dict(self.odds) | dict.fromkeys(weak, ODDS_WEAK))
+
     def log_prior(self, chosen: Sequence[str], scenario: str) -> float:
         """Log prior probability of a set of effects in a noise scenario; minus infinity for one that
         cannot be."""
@@ -170,6 +178,15 @@ class Case:
     def _twice(self, chosen: Sequence[str]) -> bool:
         """Whether one of these effects is a part of another: together they say no more than that one."""
         return any(part in chosen for name in chosen for part in self.catalogue[name].holds)
+
+
+def visible(reduced: Reduced, name: str) -> bool:
+    """Whether this effect, had it its plausible size, would have shown in these voyages."""
+    rows = reduced.rows((name,))
+    A = reduced.A[np.ix_(rows, rows)]
+    return (
+        0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1]) > VISIBLE
+    )
 
 
 # of the fast part at least, in surge, sway and yaw, of a standard acceleration

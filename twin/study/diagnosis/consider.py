@@ -21,7 +21,7 @@ from twin.study.estimation.rarity import deviations
 from twin.study.estimation.start import wave_period_s
 from twin.study.instruments.findings import P95
 from twin.study.reference.evidence import Hypothesis
-from twin.study.reference.healthy import Healthy, compared, score
+from twin.study.reference.healthy import Healthy, always_weighed, compared, score
 from twin.study.reference.seaway import at_sea
 from twin.study.reference.structure import noise_model_of
 
@@ -104,7 +104,8 @@ def against_healthy(case: Case) -> Healthy | None:
     noise_model = noise_model_of(case.model.ship, "beside")
     if not scores or noise_model is None:
         return None
-    causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
+    its = {type(e) for e in case.model.effects}
+    causes = [n for n in case.names(case.candidates) if always_weighed(case.catalogue[n], its)]
     own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in case.lines]
     return compared(own, scores)
 

@@ -13,8 +13,7 @@ import numpy as np
 from twin.physics.actuators.helm import ACROSS, actuator_orders
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.search import visible
+from twin.study.diagnosis.case import Case, visible
 from twin.study.estimation.linear import linearise
 from twin.study.prediction.trial import shaft_speed
 from twin.study.track.track import READINGS, Track

@@ -9,6 +9,7 @@ would do to a true model anyway says nothing."""
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -67,21 +68,25 @@ class OpenLoopCheck:
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
-        them does. As far as one effect leads it there alone, the second is not needed."""
+        them does."""
+        kept = (h for h in weighed if not self._degrades(h.effects))
+        return sorted((self.with_path(h) for h in kept), key=lambda h: -h.log_weight)
+
+    def with_path(self, h: Hypothesis) -> Hypothesis:
+        """The same hypothesis with this evidence too. As far as one effect leads the ship there alone, a
+        second is not needed."""
+        more = max(0, len(self._causes(h.effects)) - 1)
+        extra = self.log_probability(h) - self._complexity * more
+        return replace(h, log_evidence=h.log_evidence + extra)
+
+    @cached_property
+    def _complexity(self) -> float:
         single = (
             self._path(f.open_loop_error_m, f.expected_error_m)
             for s, f in self.found.items()
             if len(self._causes(s)) == 1
         )
-        complexity = max(0.0, COMPLEXITY + max(single, default=-COMPLEXITY))
-        kept = [h for h in weighed if not self._degrades(h.effects)]
-        extra = (
-            self.log_probability(h) - complexity * max(0, len(self._causes(h.effects)) - 1) for h in kept
-        )
-        return sorted(
-            (replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)),
-            key=lambda h: -h.log_weight,
-        )
+        return max(0.0, COMPLEXITY + max(single, default=-COMPLEXITY))
 
     def _causes(self, effects: Sets) -> Sets:
         return tuple(name for name in effects if name not in self.weather)

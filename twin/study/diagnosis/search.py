@@ -9,12 +9,13 @@ stand beside any cause, and takes no cause's place."""
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
 from twin.physics.effect import SensorFault
 from twin.study.diagnosis.altered import floats
-from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case
+from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case, visible
 from twin.study.diagnosis.consider import left_over
 from twin.study.diagnosis.criteria import NEARLY
 from twin.study.diagnosis.decision import explained
@@ -34,27 +35,31 @@ SINGLES = 3  # of which so many single effects first, unless nothing at all expl
 # much
 LAST = 6
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is relinearised at its estimate
-# log odds that an effect of plausible size would have to show, or the data could not have seen it
-VISIBLE = 4.0
 # of an effect's plausible size that any day brings, from which it is relinearised at its estimate without
 # having earned it
 MUCH = 0.05
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
 
-Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
+
+class Searched(NamedTuple):
+    """What a search found."""
+
+    case: Case  # with the odds of what would not have shown
+    weighed: list[Hypothesis]  # all hypotheses, the likeliest first
+    found: dict[Sets, Found]  # the few that were relinearised
+    seen: dict[str, bool]  # whether each candidate, had it its plausible size, would have shown
+    path: OpenLoopCheck  # where those that could be the answer lead the ship
 
 
 def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
-    """All hypotheses with their weights, best first; the few that were relinearised; and whether each
-    candidate, had it its plausible size, would have shown."""
+    """All hypotheses with their weights, judged one step ahead and along the path."""
     progress("weighing every effect and every pair")
     scenarios = dict(zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True))
     seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
-    weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
-    case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
+    case = case.weakened(seen)
     book = Hypotheses(case, scenarios)
     searched = _searched(book, progress, seen)
-    if not _explained(case, *searched[:2]):
+    if not _explained(case, searched.weighed, searched.found):
         book.wide, book.last = True, book.one_more()
         searched = _searched(book, progress, seen)
     return searched
@@ -70,7 +75,7 @@ def _searched(book: "Hypotheses", progress: Callable[[str], None], seen: dict[st
         book.judge(chosen)
     progress("open-loop validation on held-out parts")
     book.asked = asked = open_loop_check(book.case, book.found, book.weighed(), book.asked)
-    return book.proved(asked), book.found | dict(asked.found), seen
+    return Searched(book.case, book.proved(asked), book.found | dict(asked.found), seen, asked)
 
 
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
@@ -78,15 +83,6 @@ def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) 
     if not case.causes(best):
         return found[best].open_loop_error_m <= NEARLY * found[best].expected_error_m
     return explained(left_over(case, weighed, found, best))
-
-
-def visible(reduced: Reduced, name: str) -> bool:
-    """Whether this effect, had it its plausible size, would have shown in these voyages."""
-    rows = reduced.rows((name,))
-    A = reduced.A[np.ix_(rows, rows)]
-    return (
-        0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1]) > VISIBLE
-    )
 
 
 def _linear(case: Case, reduced: Reduced, scenario: str) -> list[tuple[Sets, float]]:

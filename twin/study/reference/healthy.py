@@ -13,7 +13,7 @@ are those of all: the leave-one-out form, which keeps that level nearly, not exa
 never a window.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
@@ -57,6 +57,12 @@ def score(reduced: Reduced, causes: Sequence[str], weather: Sequence[str]) -> fl
     return max((e for s, e in weigh_sets(reduced, sets) if s), default=alone[0][1]) - alone[0][1]
 
 
+def always_weighed(effect: type[Effect], present: Collection[type[Effect]]) -> bool:
+    """Whether every diagnosis weighs it: not what kinematics look for, where the ship file lacks it. No other
+    is scored, or healthy voyages would have more suspects than those that are judged."""
+    return not effect.kinematic or effect in present
+
+
 def compared(own: Sequence[float], healthy: Sequence[float]) -> Healthy:
     """Of voyages' scores among those of the references. Of m voyages asked at once, m times the least p of
     any (Bonferroni)."""
@@ -79,9 +85,11 @@ def left_out_scores(
     there are fewer than two."""
     if len(tracks) < 2:
         return []
-    kinds = dict(catalogue)
+    kinds, its = dict(catalogue), {type(e) for e in model.effects}
     names = [
-        n for n, e in kinds.items() if all(getattr(model.ship, k, None) is not None for k in e.needs_ship)
+        n
+        for n, e in kinds.items()
+        if always_weighed(e, its) and all(getattr(model.ship, k, None) is not None for k in e.needs_ship)
     ]
     effects = tuple(u for n in names for u in effect_unknowns(kinds[n], model))
     rough = rough_unknowns(model)

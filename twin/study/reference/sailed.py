@@ -12,6 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
+from twin.study.reference.derivatives import with_one_step_core
 from twin.study.reference.seaway import swung
 from twin.study.track.track import Track, track
 
@@ -34,7 +35,8 @@ class Sailed:
 
 def sailed(voyage: Voyage, ship: Ship, sha256: str = "") -> Sailed:
     """A voyage on the ship's grid; `sha256`: of its file, else of its samples."""
-    return Sailed(voyage, swung(track(voyage, ship), Model.of(ship)), sha256 or samples_hash(voyage))
+    about = Model.of(with_one_step_core(ship))  # as its filter reads a voyage
+    return Sailed(voyage, swung(track(voyage, ship), about), sha256 or samples_hash(voyage))
 
 
 def samples_hash(voyage: Voyage) -> str:
