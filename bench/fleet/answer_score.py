@@ -11,7 +11,7 @@ Row = Mapping[str, Any]
 GAINS = 0.10  # share by which its oracle must bring the ship nearer, for a cause to count as one to be found
 SAME = {"Current": {"Current", "VaryingCurrent"}, "VaryingCurrent": {"Current", "VaryingCurrent"}}
 # kinds that were outside the catalogue when the fleet was made -> the effect that is one by now
-BY_NOW = {"SlowCompass": {"HeadingLag"}}
+BY_NOW = {"SlowCompass": {"HeadingLag"}, "RateScale": {"GyroScale"}}
 WEATHER_PROBABILITY = 0.5  # probability from which weather is told as today's
 
 

@@ -37,6 +37,7 @@ ISSUE = [
     "AntennaOffset",
     "SensorDelay",
     "GyroBias",
+    "GyroScale",
     "HeadingLag",
     "CompassDeviation",
     "ReceiverSmoothing",

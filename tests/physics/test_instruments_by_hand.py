@@ -59,6 +59,7 @@ def test_instruments_by_hand(ship):
     )
     assert (late.u, late.v) == (pytest.approx(4 - 0.05 - 0.005), pytest.approx(-0.5 + 0.025 - 0.04))
     assert find("GyroBias")(bias=0.001).read(s, ship).r == pytest.approx(0.021)
+    assert find("GyroScale")(scale=-0.05).read(s, ship).r == pytest.approx(0.019)
 
 
 def test_a_slow_compass_by_hand(ship):

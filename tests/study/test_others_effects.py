@@ -18,7 +18,7 @@ name = "harbour-effects"
 version = "1.0"
 [project.entry-points."twin.effects"]
 Derrick = "harbour_effects.derrick:Derrick"
-GyroScale = "harbour_effects.gyro_scale:GyroScale"
+SlowGyro = "harbour_effects.slow_gyro:SlowGyro"
 RotorSail = "harbour_effects.rotor_sail:RotorSail"
 """
 DERRICK = '''"""A derrick that slews to and fro with a load over the side.
@@ -42,25 +42,25 @@ class Derrick(Force):
     def force(self, s, ship):
         return ForceVector(N=self.moment * sin(2.0 * pi / 300.0 * s.t))
 '''
-GYRO_SCALE = '''"""A rate gyro whose scale is off.
+SLOW_GYRO = '''"""A rate gyro that is slow.
 
-r_m = (1 + scale) r
+r_m = r - lag dr/dt
 """
 from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
 
 
-class GyroScale(SensorFault):
-    """The rate gyro shows a fixed percentage too much or too little."""
+class SlowGyro(SensorFault):
+    """The rate gyro shows how the ship turned some time ago."""
 
     needs = ("r",)
     attitude = True
     source = "a test"
-    scale: float = param(0.05, unit="-", lo=-0.5, hi=0.5, sd=0.05, doc="shown rate of turn over the true one, less 1")
+    lag: float = param(0.5, unit="s", lo=-5.0, hi=20.0, sd=1.0, doc="how long ago it turned as it shows")
 
     def read(self, s, ship):
-        return replace(s, r=s.r * (1.0 + self.scale))
+        return replace(s, r=s.r - self.lag * s.r_dot)
 '''
 ROTOR_SAIL = '''"""A rotor sail: a lift across the air past the ship (Magnus).
 
@@ -86,10 +86,10 @@ class RotorSail(Force):
         q = 0.5 * 1.225 * ship.A_L * self.lift * hypot(u, v)
         return ForceVector(X=q * v, Y=-q * u)
 '''
-FILES = {"__init__": "", "derrick": DERRICK, "gyro_scale": GYRO_SCALE, "rotor_sail": ROTOR_SAIL}
+FILES = {"__init__": "", "derrick": DERRICK, "slow_gyro": SLOW_GYRO, "rotor_sail": ROTOR_SAIL}
 # prior widths of it that are hidden, and the wind that is recorded [m/s], which turns by half a circle: across a
 # steady one a rotor sail is a pull from a fixed bearing
-HIDDEN = {"Derrick": (3.0, None), "GyroScale": (3.0, None), "RotorSail": (3.0, 16.0)}
+HIDDEN = {"Derrick": (3.0, None), "SlowGyro": (3.0, None), "RotorSail": (3.0, 16.0)}
 SAIL = """
 import json, sys
 from math import pi
@@ -170,7 +170,7 @@ def test_a_calibration_keeps_what_is_usual_of_the_effects_of_others(calibrated):
     numbers; of the weather how strong it was, without a number, for tomorrow's is another one."""
     usual = calibrated[1]
     owners = {label.partition(".")[0] for label in usual["labels"]}
-    assert {"Derrick", "GyroScale"} <= owners and "RotorSail" not in owners
+    assert {"Derrick", "SlowGyro"} <= owners and "RotorSail" not in owners
     assert usual["weather"]["RotorSail"] > 0.0
 
 

@@ -55,6 +55,18 @@ def test_the_numbers_of_all_causes_come_from_one_fit(whole):
     assert found.open_loop_error_m < 0.5 * nothing.open_loop_error_m
 
 
+def test_the_whole_takes_its_place_among_the_rivals_with_the_evidence_of_its_path(whole):
+    weights = [h.log_weight for h in whole.weighed]
+    assert weights == sorted(weights, reverse=True)
+    (entry,) = (h for h in whole.weighed if h.effects == whole.joined and h.scenario == _scenario(whole))
+    own = whole.found[whole.joined].hypothesis
+    assert entry.log_weight == whole.path.with_path(own).log_weight < own.log_weight
+
+
+def _scenario(told):
+    return told.found[told.joined].hypothesis.scenario
+
+
 def test_the_facts_are_those_of_the_whole(whole, half):
     facts = whole.considered.facts
     assert {c.effect for c in facts.causes} == set(whole.causes)

@@ -11,8 +11,10 @@ from twin.physics.model import Model
 from twin.recording.read import read_voyage
 from twin.study.calibration import usual as baseline
 from twin.study.calibration.usual import usual
+from twin.study.diagnosis import assemble
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.estimation.columns import core_unknowns
+from twin.study.reference import sailed
 from twin.study.reference.derivatives import one_step_core, with_one_step_core
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import track
@@ -94,6 +96,21 @@ def test_without_one_of_its_voyages_the_core_that_predicts_is_moved_by_what_hold
     by_steps, by_paths = files
     usual(by_paths, by_steps, tracks, noise_model_of(by_steps))
     assert [float(x.model.ship.derivative("Y_v")) for x in seen] == [float(by_paths.derivative("Y_v"))]
+
+
+def test_waves_are_looked_for_about_the_core_by_steps(files, monkeypatch):
+    """Of the voyages that are judged as of the references."""
+    by_steps, by_paths = files
+    about = []
+    for module in (assemble, sailed):
+        monkeypatch.setattr(module, "swung", lambda t, model: about.append(model) or t)
+    monkeypatch.setattr(assemble, "of_tracks", lambda tracks, *_: tracks)
+    monday = read_voyage(MONDAY)
+    assemble.assemble([monday], by_paths)
+    sailed.sailed(monday, by_paths)
+    assert [float(m.ship.derivative("Y_v")) for m in about] == 2 * [
+        pytest.approx(float(by_steps.derivative("Y_v")), rel=1e-12)
+    ]
 
 
 @pytest.mark.parametrize("kept", [{"N_r": "x"}, 3, {"N_r": float("nan")}])

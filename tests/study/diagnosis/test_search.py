@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.diagnosis.case import SCENARIOS
+from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS
 from twin.study.diagnosis.criteria import SURE
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import Hypotheses, search
@@ -104,6 +104,14 @@ def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(ca
     assert held.next() is None
     held.wide = True
     assert held.next() == ("RudderWear",)
+
+
+def test_what_needs_a_measured_cause_that_was_too_weak_to_show_keeps_little_odds_in_all_that_follows(case_of):
+    """Also where a further cause is weighed beside those that the search found."""
+    told = search(case_of("nothing"))
+    little = {n for n, odds in told.case.odds.items() if odds == ODDS_WEAK}
+    assert little == {n for n, shows in told.seen.items() if not shows and told.case.catalogue[n].needs}
+    assert little and ODDS_WEAK not in case_of("nothing").odds.values()
 
 
 def test_a_set_that_was_never_weighed_can_be_judged(case):

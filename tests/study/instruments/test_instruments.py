@@ -86,14 +86,15 @@ def test_a_healthy_ship_has_no_fault_and_its_stream_is_found(healthy):
 def with_sternway(seconds=720.0, astern=(480.0, 600.0), slides=0.5):
     """A boat of 2 m that zigzags at 1.5 m/s, and for a while goes astern at 1 m/s and slides to starboard, as
     no formula of a turn has it; healthy instruments, twice a second."""
-    t = np.arange(0.0, seconds, 0.5)
+    t = np.arange(0.0, seconds, 0.05)
     rng, back = np.random.default_rng(4), np.clip(np.minimum(t - astern[0], astern[1] - t) / 5.0, 0.0, 1.0)
     psi = np.radians(25.0) * np.sin(t / 4.0) * (1.0 - back) + 0.3 * np.sin(t / 90.0)
     r = np.gradient(psi, t)
     u = 1.5 - 2.5 * back
     v = -0.4 * 2.0 * r + slides * np.maximum(-u, 0.0)
     over = (u + 1j * v) * np.exp(1j * psi)
-    place = np.r_[0.0, np.cumsum((over[1:] + over[:-1]) / 4.0)]
+    place = np.r_[0.0, np.cumsum((over[1:] + over[:-1]) / 40.0)]
+    t, psi, r, u, v, place = (x[::10] for x in (t, psi, r, u, v, place))
     noisy = lambda x, sd: x + sd * rng.normal(size=t.size)
     return {
         "time_s": t, "north_m": noisy(place.real, 0.05), "east_m": noisy(place.imag, 0.05),
@@ -121,6 +122,7 @@ def test_a_boat_that_slides_as_it_goes_astern_has_no_fault_of_its_compass():
         ("heading_bias", "HeadingBias", "A", -0.3, lambda c: compass(c, lambda psi: -0.3)),
         ("deviation", "CompassDeviation", "B", 0.1, lambda c: compass(c, lambda psi: 0.1 * np.sin(psi))),
         ("gyro_bias", "GyroBias", "gyro_bias", 0.001, lambda c: c | {RATE: c[RATE] + np.degrees(0.001)}),
+        ("gyro_scale", "GyroScale", "gyro_scale", 0.1, lambda c: c | {RATE: 1.1 * c[RATE]}),
         ("log_scale", "SpeedLogScale", "log_scale", -0.25, lambda c: c | {LOG: 0.75 * c[LOG]}),
     ],
 )

@@ -5,9 +5,18 @@ from math import log
 import numpy as np
 import pytest
 
+from twin.commands.story import MONDAY, SHIP
+from twin.physics.effects import find, of_ship
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.recording.read import read_voyage
 from twin.study.estimation.columns import Unknown
-from twin.study.reference.evidence import Reduced
+from twin.study.estimation.innovations import NoiseModel
+from twin.study.reference import healthy
+from twin.study.reference.evidence import Nuisance, Reduced
 from twin.study.reference.healthy import compared, score
+from twin.study.reference.nuisance import usual_unknowns
+from twin.study.track.track import track
 
 
 def told(information, pull):
@@ -38,3 +47,24 @@ def test_the_score_is_the_bayes_factor_of_the_cause_that_explains_most():
 def test_a_cause_of_which_the_voyages_tell_nothing_is_no_news():
     """Else its Bayes factor of one would hide how much less the others explain."""
     assert score(told((50.0, 0.0), (0.1, 0.0)), ["Wear", "Bias"], []) < -1.0
+
+
+@pytest.mark.parametrize("present", [(), ("HeadingLag",)])
+def test_a_reference_is_scored_by_the_causes_that_every_diagnosis_weighs(monkeypatch, present):
+    """Else it has more suspects than the voyage it is compared with, which then looks usual."""
+    ship, scored = load(SHIP), []
+    model = Model.of(ship.with_effects(*(find(name).absent(ship) for name in present)))
+    kinematic = {n for n, e in of_ship(ship).items() if e.kinematic}
+    assert kinematic == {"HeadingLag", "ReceiverSmoothing", "CompassDeviation"}
+
+    class Others:
+        unknowns = usual_unknowns(model, of_ship(ship))
+
+        def nuisance(self, without):
+            return Nuisance(self.unknowns, np.eye(len(self.unknowns)), np.zeros(len(self.unknowns)))
+
+    monkeypatch.setattr(healthy, "score", lambda reduced, causes, weather: scored.append(set(causes)) or 0.0)
+    whole = track(read_voyage(MONDAY), ship)
+    halves = [whole.part(0, len(whole) // 2), whole.part(len(whole) // 2, len(whole))]
+    assert healthy.left_out_scores(halves, model, of_ship(ship), Others(), NoiseModel(), 1.0) == [0.0, 0.0]
+    assert all(causes & kinematic == set(present) and "HullFouling" in causes for causes in scored)

@@ -19,6 +19,7 @@ from .cross_flow_drag import CrossFlowDrag
 from .current import Current
 from .external_force import ExternalForce
 from .gyro_bias import GyroBias
+from .gyro_scale import GyroScale
 from .heading_bias import HeadingBias
 from .heading_lag import HeadingLag
 from .hull_asymmetry import HullAsymmetry
@@ -73,6 +74,7 @@ BUILT_IN: tuple[type[Effect], ...] = (
     AntennaOffset,
     SensorDelay,
     GyroBias,
+    GyroScale,
     HeadingLag,
     CompassDeviation,
     ReceiverSmoothing,

@@ -8,9 +8,9 @@ from twin.num import num
 from twin.physics.actuators import NUMBERS
 from twin.physics.effects import find, of_role
 from twin.physics.ship import DERIVATIVES
+from twin.study.estimation.box import at_an_end
 from twin.study.estimation.columns import NO_MODEL
 
-EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
 BLIND = 1.0
@@ -46,7 +46,7 @@ def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     names = [
         d["name"]
         for d in derivatives
-        if d["excited"] and _at_an_end(d["value"], *box[d["name"].rpartition(".")[2]])
+        if d["excited"] and at_an_end(d["value"], *box[d["name"].rpartition(".")[2]])
     ]
     if not names:
         return []
@@ -84,11 +84,6 @@ def _without_lift(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
         for d in derivatives
         if d["name"] in ON_EVERY_HULL and d["excited"] and abs(d["value"]) < NIL * abs(d["before"])
     ]
-
-
-def _at_an_end(value: float, lo: float, hi: float) -> bool:
-    """Whether a box stopped this value; at zero a term is only not there."""
-    return any(end != 0.0 and abs(value - end) < EDGE * (hi - lo) for end in (lo, hi))
 
 
 def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -14,15 +14,7 @@ from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import MOST_SEGMENTS, ODDS, ODDS_UNNAMED, ODDS_WEATHER, Case, settle
 from twin.study.diagnosis.open_loop_check import horizon_s
-from twin.study.estimation.columns import (
-    FORM,
-    ROUGH,
-    SEA,
-    Unknown,
-    core_unknowns,
-    lateness_unknowns,
-    rough_unknowns,
-)
+from twin.study.estimation.columns import Unknown, core_unknowns, rough_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.estimation.of_effect import effect_unknowns
@@ -32,11 +24,11 @@ from twin.study.reference.nuisance import (
     TEMPER,
     from_ship,
     known_from,
-    lasting,
     nuisance_unknowns,
     of_known_weather,
     temper_of,
     usual_unknowns,
+    with_effects,
 )
 from twin.study.reference.reading import read_lines
 from twin.study.reference.sailed import samples_hash
@@ -112,9 +104,7 @@ def of_tracks(
         for u in of_each(effect_unknowns(judged[name], about), tracks if name in own else ())
     )
     nuisance, rough = nuisance_unknowns(about, catalogue), rough_unknowns(about)
-    core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
-    extra = [u for u in lasting(about, catalogue) if u.owner not in candidates]
-    unknowns = (*core, *effects, *extra, *lateness_unknowns())
+    unknowns = with_effects((*nuisance, *rough), effects, about, catalogue)
     before = (
         _of_references(references, about, catalogue, progress)
         if references

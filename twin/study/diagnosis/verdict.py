@@ -13,13 +13,11 @@ from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.criteria import CERTAIN, CLEAR, LOST, SURE
 from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
-from twin.study.estimation.columns import Unknown
+from twin.study.estimation.box import at_an_end
 from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
 
 LARGEST_GROUP = 4  # effects that may stand for each other and still be an answer
-EDGE = 1e-6  # of the box
-
 
 MOST_SAID = 0.99  # probability beyond which nothing is told: no more ships than that were ever asked
 RIVALS = 5  # hypotheses that are told beside the likeliest
@@ -175,19 +173,11 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
                     "low95": float(np.clip(low, u.lo, u.hi)),
                     "high95": float(np.clip(high, u.lo, u.hi)),
                     "unit": u.unit,
-                    "at_box_end": _at_end(u, value),
+                    "at_box_end": at_an_end(value, u.lo, u.hi, u.centre),
                 }
                 | ({"in_ship_file": u.centre} if name in case.present else {})
             )
     return out
-
-
-def _at_end(u: Unknown, value: float) -> bool:
-    """Whether a box stopped this number; at none an effect is only not there."""
-    return any(
-        (end != u.centre and abs(value - end) <= EDGE * (u.hi - u.lo)) or not u.lo <= value <= u.hi
-        for end in (u.lo, u.hi)
-    )
 
 
 def typical_force(case: Case, found: Found, name: str) -> dict[str, float]:

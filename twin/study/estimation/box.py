@@ -5,6 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 
 INSIDE = 1e-9  # by which a half-space may seem left, in widths of priors
+EDGE = 1e-6  # of a box: what is nearer than this to its end was stopped by it
+
+
+def at_an_end(value: float, lo: float, hi: float, none: float = 0.0) -> bool:
+    """Whether a box stopped a number, or does not hold it; at an end where it is `none` it is only not
+    there."""
+    stops = (end for end in (lo, hi) if end != none)
+    return not lo <= value <= hi or any(abs(value - end) <= EDGE * (hi - lo) for end in stops)
 
 
 def stopped(

@@ -25,15 +25,20 @@ AFFECT = {
     "place": ("gnss_delay", "antenna_ahead", "antenna_starboard", "antenna_above"),
     "velocity": ("gnss_delay", "smoothing", "antenna_ahead", "antenna_starboard"),
     "heading": ("heading_delay", "A", "B", "C", "D", "E"),
-    "rate": ("rate_delay", "gyro_bias"),
+    "rate": ("rate_delay", "gyro_bias", "gyro_scale"),
     "log": ("log_delay", "log_scale", "log_bias", "log_angle", "current_north", "current_east"),
     "log aside": ("log_delay", "log_scale", "log_angle", "current_north", "current_east"),
     "wind": ("vane", "wind_scale"),
     "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "leeway"),
 }
-# without which (or a log of two axes) only how the ship drifts in a turn would tell it, and that is no
-# instrument's business
-WANTS = {"antenna_ahead": ("log aside",), "antenna_starboard": ("log aside",), "gnss_delay": ("own",)}
+# without which (or a log of two axes) only how the ship drifts in a turn would tell it (the gyro's scale: tell
+# it from a deviation), and that is no instrument's business
+WANTS = {
+    "antenna_ahead": ("log aside",),
+    "antenna_starboard": ("log aside",),
+    "gnss_delay": ("own",),
+    "gyro_scale": ("own",),
+}
 DIFFERENCE_WIDTHS = 1e-5  # of a prior width, for slopes
 SENSES: dict[str, Callable[[Problem, Theta, Rows | None], np.ndarray]] = {
     "place": place,

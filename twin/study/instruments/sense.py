@@ -85,11 +85,11 @@ def heading(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 
 
 def rate(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
-    """(N,) rate of turn [rad/s] that a late rate gyro with a bias shows at each reading."""
-    here = at(p, p.by["rate"].t, get(theta, "rate_delay"))
+    """(N,) rate of turn [rad/s] that a late rate gyro with a bias and a scale shows at each reading."""
+    here, scale = at(p, p.by["rate"].t, get(theta, "rate_delay")), 1.0 + get(theta, "gyro_scale")
     if rows:
-        rows.add(0, p.at[0][:, 2], here.weights(1))
-    return np.asarray(here.v[:, 2] + get(theta, "gyro_bias"))
+        rows.add(0, p.at[0][:, 2], here.weights(1), scale)
+    return np.asarray(scale * here.v[:, 2] + get(theta, "gyro_bias"))
 
 
 def _through_water(here: Here, theta: Theta) -> tuple[np.ndarray, np.ndarray]:

@@ -47,6 +47,7 @@ FAULTS: Mapping[str, InstrumentFault] = {
     "heading_bias": InstrumentFault("compass bias (variation and alignment)", "heading", CIRCLES),
     "deviation": InstrumentFault("compass deviation curve", "heading", CIRCLES),
     "gyro_bias": InstrumentFault("rate gyro bias", "rate", "any voyage with heading and rate of turn"),
+    "gyro_scale": InstrumentFault("rate gyro scale", "rate", "turns, with heading and rate of turn recorded"),
     "log_scale": InstrumentFault("speed log scale", "log", "reciprocal courses or a circle"),
     "log_bias": InstrumentFault("speed log bias", "log", "reciprocal courses at two speeds"),
     "log_angle": InstrumentFault("speed log askew", "log aside", CIRCLES),
@@ -83,6 +84,9 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
     InstrumentUnknown("E", "deviation", "rad", 0.03, "one", "deviation with the cosine of twice the heading"),
     InstrumentUnknown(
         "gyro_bias", "gyro_bias", "rad/s", 0.002, "one", "shown rate of turn less the true one"
+    ),
+    InstrumentUnknown(
+        "gyro_scale", "gyro_scale", "-", 0.1, "one", "shown rate of turn over the true one, less 1"
     ),
     InstrumentUnknown(
         "log_scale", "log_scale", "-", 0.2, "one", "shown speed through water over the true one, less 1"

@@ -22,11 +22,11 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.columns import FORM, ROUGH, SEA, lateness_unknowns, rough_unknowns
+from twin.study.estimation.columns import rough_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.evidence import Reduced, reduce, weigh_sets
-from twin.study.reference.nuisance import Known, lasting, of_known_weather
+from twin.study.reference.nuisance import Known, of_known_weather, with_effects
 from twin.study.reference.reading import MOST_SEGMENTS, read_lines
 from twin.study.track.track import Track
 
@@ -93,9 +93,7 @@ def left_out_scores(
     ]
     effects = tuple(u for n in names for u in effect_unknowns(kinds[n], model))
     rough = rough_unknowns(model)
-    core = [u for u in (*known.unknowns, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
-    extra = [u for u in lasting(model, kinds) if u.owner not in names]
-    unknowns = (*core, *effects, *extra, *lateness_unknowns())
+    unknowns = with_effects((*known.unknowns, *rough), effects, model, kinds)
     weather = [n for n in names if kinds[n].is_weather()]
     causes = [n for n in names if n not in weather]
     out = []

@@ -10,6 +10,8 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.estimation.columns import (
     FORM,
+    ROUGH,
+    SEA,
     Unknown,
     core_unknowns,
     form_unknowns,
@@ -80,6 +82,20 @@ def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Un
         *nuisance_unknowns(model, catalogue),
         *(replace(u, sd=HEALTHY_WIDTHS * u.sd) for u in daily(model, catalogue)),
     )
+
+
+def with_effects(
+    known: Sequence[Unknown],
+    effects: Sequence[Unknown],
+    model: Model,
+    catalogue: dict[str, type[Effect]],
+) -> tuple[Unknown, ...]:
+    """The columns in which a voyage is judged: of what is `known` the core and what it leaves out; numbers of
+    the effects that may be there; what else lasts on this ship; and how late the instruments are."""
+    core = [u for u in known if u.owner in ("core", FORM, SEA, ROUGH)]
+    judged = {u.owner for u in effects}
+    extra = [u for u in lasting(model, catalogue) if u.owner not in judged]
+    return (*core, *effects, *extra, *lateness_unknowns())
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, refine, standing
 from twin.study.diagnosis.verdict import parameters
-from twin.study.estimation.columns import Unknown
+from twin.study.estimation.box import at_an_end
 from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
 from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
@@ -234,15 +234,10 @@ def _numbers(case: Case, found: Found) -> list[Number]:
                         min(low, value),
                         max(high, value),
                         gained,
-                        _at_an_end(u, value),
+                        at_an_end(value, u.lo, u.hi, u.centre),
                     )
                 )
     return out
-
-
-def _at_an_end(u: Unknown, value: float) -> bool:
-    """Whether a box stopped this number; where it is none of its effect it is only not there."""
-    return value != u.centre and min(value - u.lo, u.hi - value) <= 1e-6 * (u.hi - u.lo)
 
 
 def lasting(names: Sequence[str]) -> list[str]:
