@@ -65,7 +65,7 @@ def test_instruments_by_hand(ship):
 def test_a_slow_compass_by_hand(ship):
     s = Situation(psi=radians(30), u=4.0, v=-0.5, r=0.02, r_dot=0.003)
     # 2 (0.02 - 0.003) = 0.034 rad behind; the velocity turned by 3 (0.02 - 0.0045) = 0.0465 rad
-    slow = find("HeadingLag")(lag=2.0, turned=3.0).read(s, ship)
+    slow = find("HeadingLag")(lag=2.0, turned=3.0, filtered=0.0).read(s, ship)
     assert slow.psi == pytest.approx(radians(30) - 0.034)
     assert (slow.u, slow.v) == (
         pytest.approx(4 * 0.9989191 + 0.5 * 0.0464832, rel=1e-6),
@@ -83,9 +83,23 @@ def test_a_slow_compass_shows_the_heading_of_then_where_a_turn_begins(ship):
 
     t = np.linspace(3.0, 30.0, 28)
     r, r_dot = 0.02 * (1.0 - np.exp(-t / 8.0)), 0.02 / 8.0 * np.exp(-t / 8.0)
-    slow = find("HeadingLag")(lag=2.0).read(Situation(psi=psi(t), u=4.0, v=0.0, r=r, r_dot=r_dot), ship)
+    late = find("HeadingLag")(lag=2.0, filtered=0.0)
+    slow = late.read(Situation(psi=psi(t), u=4.0, v=0.0, r=r, r_dot=r_dot), ship)
     off, by_rate = slow.psi - psi(t - 2.0), psi(t) - 2.0 * r - psi(t - 2.0)
     assert np.abs(off).max() < 1e-3 and np.all(np.abs(off) < 0.1 * np.abs(by_rate))
+
+
+def test_a_compass_that_filters_lags_otherwise_than_one_that_is_late(ship):
+    """Test: the same turn, shown by a filter of first order with a time constant of 2 s. Expected: half as far off
+    as if it were late, and the heading of the filter (its differential equation solved) to a fifth of a degree."""
+    t, T = np.linspace(3.0, 30.0, 28), 2.0
+    eased = np.exp(-t / 8.0)
+    s = Situation(
+        psi=0.02 * (t - 8.0 * (1.0 - eased)), u=4.0, v=0.0, r=0.02 * (1.0 - eased), r_dot=0.0025 * eased
+    )
+    shown = 0.02 * (t - T - 8.0 + 8.0 * eased / (1.0 - T / 8.0))
+    off = [np.abs(find("HeadingLag")(lag=T, filtered=k).read(s, ship).psi - shown).max() for k in (1.0, 0.0)]
+    assert off[0] < 0.5 * off[1] and off[0] < radians(0.2)
 
 
 def test_a_compass_with_iron_about_it_by_hand(ship):

@@ -31,8 +31,8 @@ AFFECT = {
     "wind": ("vane", "wind_scale"),
     "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "leeway"),
 }
-# without which (or a log of two axes) only how the ship drifts in a turn would tell it (the gyro's scale: tell
-# it from a deviation), and that is no instrument's business
+# without which (or a log of two axes) only how the ship drifts in a turn would tell it (the gyro's scale:
+# from a deviation), and that is no instrument's business
 WANTS = {
     "antenna_ahead": ("log aside",),
     "antenna_starboard": ("log aside",),
