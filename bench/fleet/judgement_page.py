@@ -32,7 +32,7 @@ SEVERAL = (
     "days and courses, with the same fault. Made by `python -m bench.fleet together FOLDER --kinds single "
     "pair nothing --keep`; cases in the order of the ships until the time was over."
 )
-STRICTER = (5.0, 6.0, 7.0, 8.0)  # SIGNIFICANT, from the one that stands
+STRICTER = (4.0, 5.0, 6.0, 7.0, 8.0)  # SIGNIFICANT, about the one that stands
 
 
 def judgement(rows: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
@@ -114,7 +114,7 @@ def _moved(rows: Sequence[Row]) -> list[str]:
         with decision_fit.thresholds({"SIGNIFICANT": value}):
             at[value] = decision_fit.outcome(rows, decision_fit.by_table)
     body = [(name, *(f"{of[name][0]} of {of[name][1]}" for of in at.values())) for name in at[STRICTER[0]]]
-    text = "All voyages, decided by the table of today with `SIGNIFICANT` as it is (5) and moved."
+    text = "All voyages, decided by the table of today with `SIGNIFICANT` as it is (6) and moved."
     titles = ("", *(f"`SIGNIFICANT` {value:g}" for value in STRICTER))
     return lines("One threshold moved", text, titles, body)
 

@@ -20,7 +20,7 @@ from twin.physics.effects import of_ship
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.criteria import CLEAR, SIGNIFICANT
+from twin.study.diagnosis.criteria import CLEAR
 from twin.study.diagnosis.refine import Found
 from twin.study.estimation.columns import lateness_unknowns
 from twin.study.instruments.by_voyage import equations
@@ -30,6 +30,9 @@ from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.on_references import KinematicRecord
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of
 
+# standard deviations from the references, or from none, from which an instrument is weighed as a cause: fewer
+# than are asked of one that is named, for the ship's motion speaks, too
+OTHERWISE = 5.0
 INSTRUMENT_OF = {
     "heading_delay": "compass"
 }  # number of kinematics -> whose usual lateness is known (columns.py)
@@ -88,7 +91,7 @@ def suspected_instruments(case: Case, asked: AskedKinematics) -> tuple[type[Effe
 
 
 def other_than_before(asked: AskedKinematics) -> list[str]:
-    """Faults that are seen, and one of whose numbers is farther from those of the references than SIGNIFICANT
+    """Faults that are seen, and one of whose numbers is farther from those of the references than OTHERWISE
     times its own standard deviation and the scatter of those together."""
     assert asked.record is not None
     out = []
@@ -96,19 +99,19 @@ def other_than_before(asked: AskedKinematics) -> list[str]:
         fault, usual, now = UNKNOWNS[INDEX[name]].fault, asked.record.numbers[name], asked.number(name)
         if now is None or fault not in asked.found.faults:
             continue
-        if abs(now[0] - usual.value) > SIGNIFICANT * float(np.hypot(now[1], usual.next_sd)):
+        if abs(now[0] - usual.value) > OTHERWISE * float(np.hypot(now[1], usual.next_sd)):
             out.append(fault)
     return list(dict.fromkeys(out))
 
 
 def beyond_usual(found: Instruments) -> list[str]:
-    """Faults that are seen, and whose number is farther from none than SIGNIFICANT times its own standard
+    """Faults that are seen, and whose number is farther from none than OTHERWISE times its own standard
     deviation and the usual lateness together."""
     usual = {u.name: u.sd for u in lateness_unknowns()}
     out = []
     for name, whose in INSTRUMENT_OF.items():
         e = found.of(name)
-        if e and e.seen and abs(e.value) > SIGNIFICANT * float(np.hypot(e.sd, usual[whose])):
+        if e and e.seen and abs(e.value) > OTHERWISE * float(np.hypot(e.sd, usual[whose])):
             out.append(e.unknown.fault)
     return out
 

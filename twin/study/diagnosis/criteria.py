@@ -17,7 +17,7 @@ NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end withi
 MOSTLY = 0.5  # share of the error without it that an explanation may leave although more is missing
 BETTER = 0.05  # share by which a force must reduce the open-loop error; less is scatter
 # others
-SIGNIFICANT = 5.0  # standard deviations of an instrument's numbers from none (families ask for 6)
+SIGNIFICANT = 6.0  # standard deviations of an instrument's numbers from none (fitted)
 CHANGED = 2.0  # standard deviations of its form by which a number must differ from the ship file's (95 %)
 USUAL = 0.25  # share of the reference voyages with as high a score, from which a cause is unchanged (fitted)
 POWER = 0.75  # share of the causes that would have shown, before nothing is said to be missing
