@@ -83,10 +83,15 @@ def case_of(tanker, voyages):
 
 
 @pytest.fixture(scope="session")
-def searched(case_of):
-    """What `search` finds in that case, by the voyage's name: (weighed, found), once, and lists of one's own."""
-    told = cache(lambda name: search(case_of(name)))
-    return lambda name: (list(told(name).weighed), dict(told(name).found))
+def search_of(case_of):
+    """What `search` finds in that case, by the voyage's name, once: none writes into it."""
+    return cache(lambda name: search(case_of(name)))
+
+
+@pytest.fixture(scope="session")
+def searched(search_of):
+    """The same as (weighed, found), and lists of one's own."""
+    return lambda name: (list(search_of(name).weighed), dict(search_of(name).found))
 
 
 @pytest.fixture(scope="session")

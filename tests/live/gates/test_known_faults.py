@@ -9,6 +9,7 @@ from twin.live.gates.faults import KnownFaults
 from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
 from twin.physics.effects.gyro_bias import GyroBias
+from twin.physics.effects.gyro_scale import GyroScale
 from twin.physics.effects.heading_bias import HeadingBias
 from twin.physics.effects.speed_log_scale import SpeedLogScale
 from twin.physics.state import Rates
@@ -36,8 +37,9 @@ def undone(ship, *faults, e=E, derived=(), without=()):
     return {a: x - READ[a] for a, x in measured.si.items() if x != READ[a]}
 
 
-def test_a_gyros_bias_and_a_compasss_are_taken_off_the_short_way_round(kvlcc2):
+def test_a_gyros_bias_its_scale_and_a_compasss_bias_are_taken_off_the_short_way_round(kvlcc2):
     assert undone(kvlcc2, GyroBias(bias=0.003)) == {"r": pytest.approx(-0.003)}
+    assert undone(kvlcc2, GyroScale(scale=0.1)) == {"r": pytest.approx(-0.1 * E.r)}
     off = undone(kvlcc2, HeadingBias(bias=0.05))
     assert off["psi"] == pytest.approx(-0.05) and {"x", "y", "r", "u_r"}.isdisjoint(off)
     off = undone(kvlcc2, HeadingBias(bias=-0.05), e=replace(E, psi=-pi + 0.01))

@@ -106,9 +106,11 @@ def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(ca
     assert held.next() == ("RudderWear",)
 
 
-def test_what_needs_a_measured_cause_that_was_too_weak_to_show_keeps_little_odds_in_all_that_follows(case_of):
+def test_what_needs_a_measured_cause_that_was_too_weak_to_show_keeps_little_odds_in_all_that_follows(
+    case_of, search_of
+):
     """Also where a further cause is weighed beside those that the search found."""
-    told = search(case_of("nothing"))
+    told = search_of("nothing")
     little = {n for n, odds in told.case.odds.items() if odds == ODDS_WEAK}
     assert little == {n for n, shows in told.seen.items() if not shows and told.case.catalogue[n].needs}
     assert little and ODDS_WEAK not in case_of("nothing").odds.values()
