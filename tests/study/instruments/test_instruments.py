@@ -115,6 +115,17 @@ def test_a_boat_that_slides_as_it_goes_astern_has_no_fault_of_its_compass():
     near(found, "A", 0.05)
 
 
+def test_the_scale_of_a_gyro_is_told_only_where_the_receiver_turned_its_velocity_itself():
+    """Test: a boat that zigzags within 25 deg, its gyro a fifth too much. Expected: that, with a velocity in the
+    receiver's own axes; nothing of a scale where the compass turned it, whose deviation would do as well."""
+    columns = with_sternway()
+    scaled = columns | {RATE: 1.2 * columns[RATE]}
+    found = estimate([voyage(scaled, "body")], 2.0)
+    assert found.faults == ("gyro_scale",)
+    near(found, "gyro_scale", 0.2)
+    assert "gyro_scale" not in estimate([voyage(scaled, "course")], 2.0).log_bayes_factors
+
+
 @pytest.mark.parametrize(
     "fault, effect, name, truth, plant",
     [

@@ -21,9 +21,9 @@ ROUNDS = 4  # selections, each about a new fit
 OWN_TURN_LOG_BAYES = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
 BY_OWN = {False: "compass", True: "receiver"}  # whether the receiver turned it itself -> what did
 Progress = Callable[[str], None]
-# the gyro's scale waits until the path stands: with a deviation it can bend it into another, from which no
-# step leads back
-AT_ONCE = [u.name for u in UNKNOWNS if u.name != "gyro_scale"]
+# by which it is asked what turned a velocity: the gyro's scale is told only where the receiver did, and would
+# speak for it wherever a gyro is off
+OF_TURNING = [u.name for u in UNKNOWNS if u.name != "gyro_scale"]
 # by the length of the ship [m]; a calibration asks the same voyages twice
 KNOWN_TURNS: WeakKeyDictionary[Readings, dict[float, float]] = WeakKeyDictionary()
 
@@ -94,7 +94,7 @@ def _itself(r: Readings, length: float, progress: Progress) -> float:
 def _likelier_itself(r: Readings, length: float, progress: Progress) -> float:
     progress(f"{r.name}: whose attitude turned the velocity?")
     sides = [Problem(r, length, own) for own in (False, True)]
-    told = [fit([p], AT_ONCE, rounds=4).log_likelihood for p in sides]
+    told = [fit([p], OF_TURNING, rounds=4).log_likelihood for p in sides]
     progress(f"{r.name}: its own rather than the compass by {told[1] - told[0]:.1f}")
     return told[1] - told[0]
 
@@ -103,7 +103,7 @@ def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[Kinem
     """All numbers at once but for one age, and which: a clock of all instruments together shows nowhere; none
     is early, so the earliest is prompt."""
     names = [u.name for u in UNKNOWNS]
-    first = fit(problems, [n for n in AT_ONCE if n != "heading_delay"], rounds=6)
+    first = fit(problems, [n for n in names if n != "heading_delay"], rounds=6)
     there = [n for n, by in CLOCKS.items() if any(b in p.by for b in by for p in problems)]
     if not any(p.tied for p in problems):  # ages of heading and rate count from the prompter of the two
         there = [n for n in there if n in OF_ATTITUDE]
