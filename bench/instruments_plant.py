@@ -15,6 +15,7 @@ SIZES: dict[str, dict[str, float]] = {
     "heading_bias": {"A": 0.05},
     "deviation": {"B": 0.06, "C": -0.04, "D": 0.02},
     "gyro_bias": {"gyro_bias": 3e-4},
+    "gyro_scale": {"gyro_scale": -0.05},
     "log_scale": {"log_scale": 0.08},
     "log_bias": {"log_bias": 0.05},
     "log_angle": {"log_angle": 0.04},
@@ -111,7 +112,8 @@ def _compass(out: dict, truth: Any, t: np.ndarray, get: Any) -> None:
     psi = _at(truth, "psi", t, get("heading_delay"))
     e = get("A") + get("B") * np.sin(psi) + get("C") * np.cos(psi) + get("D") * np.sin(2 * psi)
     out[PSI] = np.mod(out[PSI] + np.degrees(psi + e - truth["psi"]), 360.0)
-    out["yaw_rate_degps"] = out["yaw_rate_degps"] + np.degrees(get("gyro_bias"))
+    more = get("gyro_bias") + get("gyro_scale") * truth["r"]
+    out["yaw_rate_degps"] = out["yaw_rate_degps"] + np.degrees(more)
 
 
 def _log(out: dict, truth: Any, t: np.ndarray, get: Any) -> None:
