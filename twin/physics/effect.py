@@ -128,9 +128,11 @@ class Effect:
     copies: ClassVar[tuple[str, ...]] = ()  # numbers that do, to first order about none, what another does
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
-    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments`
-    # looks for it; a diagnosis weighs only a change of one that the ship file has
+    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments` and
+    # a calibration look for it, and no core is fitted beside it unless the ship file has it
     kinematic: ClassVar[bool] = False
+    # of these, whether a diagnosis weighs it only where kinematics ask for it, or as a change of the file's
+    suspected_first: ClassVar[bool] = False
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
     # share of its length by which its side force may attack elsewhere than its form has it (one sd)
     lever: ClassVar[float] = 0.0

@@ -130,7 +130,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
         [f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else []
     )
     lines += [f"attacks   {_attacks(effect)}"] if effect.lever else []
-    lines += [f"found by  twin instruments; {CHANGE}"] if effect.kinematic else []
+    lines += [f"found by  twin instruments; {CHANGE}"] if effect.suspected_first else []
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     name = effect.__name__ + ".NAME" * (issubclass(effect, OfActuator) and not effect.actuator)
     add = f"next: twin add {name} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
@@ -195,7 +195,7 @@ def _entry(effect: type[Effect]) -> list[str]:
     if effect.needs_ship:
         needs += f"; of the ship {', '.join(effect.needs_ship)}"
     needs += f". Attacks {_attacks(effect)}" if effect.lever else ""
-    needs += f". `twin instruments` looks for it; {CHANGE}" if effect.kinematic else ""
+    needs += f". `twin instruments` looks for it; {CHANGE}" if effect.suspected_first else ""
     rows = [
         f"| `{name}` | {unit} | {size} | {box} | {sd} | {doc.replace('|', '/')} |"
         for name, unit, size, box, sd, doc in (row(p, None) for p in effect.params())

@@ -28,6 +28,7 @@ class CompassDeviation(SensorFault):
 
     attitude = True
     kinematic = True
+    suspected_first = True
     role = "compass"
     with_core = "so the ship's way through the water told on the reference voyages"
     by_readings = MappingProxyType({name: name for name in "BCDE"})

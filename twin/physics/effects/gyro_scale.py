@@ -17,6 +17,7 @@ class GyroScale(SensorFault):
 
     needs = ("r",)
     attitude = True
+    kinematic = True
     by_readings = MappingProxyType({"gyro_scale": "scale"})
     source = "IEEE Std 952-1997 (scale factor error); IMO A.526(13) (rate-of-turn indicators: 5 %)"
 

@@ -25,6 +25,7 @@ class HeadingLag(SensorFault):
 
     attitude = True
     kinematic = True
+    suspected_first = True
     ages = ("lag",)
     turning = "turned"
     size = "lag"

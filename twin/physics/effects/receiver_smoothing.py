@@ -19,6 +19,7 @@ class ReceiverSmoothing(SensorFault):
     does."""
 
     kinematic = True
+    suspected_first = True
     by_readings = MappingProxyType({"smoothing": "time"})
     source = (
         "Kaplan & Hegarty (2017) Understanding GPS/GNSS, 3rd ed., ch. 8 and 13 (loop bandwidth, "

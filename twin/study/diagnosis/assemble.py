@@ -86,11 +86,11 @@ def of_tracks(
     asked: Sequence[type[Effect]] = (),
 ) -> Case:
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
-    fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
-    (`Effect.kinematic`); of those in the ship file a change is judged all the same."""
+    fit and some for the proof). `asked`: effects that are judged although they wait for kinematics
+    (`Effect.suspected_first`); of those in the ship file a change is judged all the same."""
     model, about, tracks = Model.of(ship), Model.of(with_one_step_core(ship)), distinct(sailed)
     wanted = {*asked, *(type(e) for e in model.effects)}
-    catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in wanted}
+    catalogue = {n: e for n, e in of_ship(ship).items() if not e.suspected_first or e in wanted}
     unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)

@@ -58,9 +58,9 @@ def score(reduced: Reduced, causes: Sequence[str], weather: Sequence[str]) -> fl
 
 
 def always_weighed(effect: type[Effect], present: Collection[type[Effect]]) -> bool:
-    """Whether every diagnosis weighs it: not what kinematics look for, where the ship file lacks it. No other
-    is scored, or healthy voyages would have more suspects than those that are judged."""
-    return not effect.kinematic or effect in present
+    """Whether every diagnosis weighs it: not what waits for kinematics, where the ship file lacks it. No
+    other is scored, or healthy voyages would have more suspects than those that are judged."""
+    return not effect.suspected_first or effect in present
 
 
 def compared(own: Sequence[float], healthy: Sequence[float]) -> Healthy:
