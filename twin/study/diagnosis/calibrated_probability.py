@@ -41,16 +41,16 @@ FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a 
     "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
 OF_CAUSE = {  # of the explanation
-    "constant": -4.31,
-    "log_odds": 0.46,
-    "clearness": 0.92,
-    "left_little": 0.13,
-    "named": 1.07,
-    "of_known_form": 1.77,
+    "constant": -4.38,
+    "log_odds": 0.54,
+    "clearness": 0.91,
+    "left_little": 0.05,
+    "named": 1.13,
+    "of_known_form": 1.87,
 }
 OF_CAUSE_BESIDE = {"constant": -1.3, "log_odds": 0.96}  # the explanation does without it
-OF_NOTHING = {"constant": -0.8, "log_odds": 1.23, "unnamed": 0.86}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -1.24, "log_odds": 0.49, "verdict": 1.88}  # what is there has no name
+OF_NOTHING = {"constant": -1.13, "log_odds": 1.22, "unnamed": 1.22}  # no cause of ship and instruments
+OF_UNKNOWN = {"constant": -1.24, "log_odds": 0.48, "verdict": 1.89}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
