@@ -26,6 +26,7 @@ from twin.study.reference.nuisance import (
     known_from,
     nuisance_unknowns,
     of_known_weather,
+    of_no_calibration,
     temper_of,
     usual_unknowns,
     with_effects,
@@ -110,7 +111,8 @@ def of_tracks(
         if references
         else _of_calibration(about, nuisance)
     )
-    daily = dict(before.known.daily) | of_known_weather(model, catalogue)
+    usual = of_known_weather(model, catalogue) | of_no_calibration(model, catalogue)
+    daily = dict(before.known.daily) | usual
     daily |= {u.label: daily[key] for u in effects if (key := f"{u.owner}.{u.name}") in daily}
     known = replace(before.known.beside(rough), daily=daily)
     progress("linearising the ship and its instruments along the tracks")

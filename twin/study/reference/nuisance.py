@@ -58,6 +58,14 @@ def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> dict[s
     }
 
 
+def of_no_calibration(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
+    """By how much [its own unit] each number is usually otherwise than none that every diagnosis weighs and
+    no core is fitted beside (`Effect.kinematic`), for no calibration says; where the ship's file lacks it."""
+    present = {type(e) for e in model.effects}
+    its = (e for e in catalogue.values() if e.kinematic and not e.suspected_first and e not in present)
+    return {u.label: HEALTHY_WIDTHS * u.sd for e in its for u in effect_unknowns(e, model)}
+
+
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """Core derivatives aside, what a calibration fits: the instruments' usual errors, and how late they
     are."""
