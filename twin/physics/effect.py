@@ -120,18 +120,16 @@ class Effect:
     belongs_to: ClassVar[str] = "ship"
     needs: ClassVar[tuple[str, ...]] = ()  # fields of Situation without which the effect is switched off
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
-    # numbers of which each day brings a little: no water and no air stands still
-    every_day: ClassVar[tuple[str, ...]] = ()
+    every_day: ClassVar[tuple[str, ...]] = ()  # numbers of which each day brings a little: no air stands still
     # standard deviation of its numbers between voyages, in widths of what a healthy ship has (decision 0030)
     varies: ClassVar[float] = 0.0
     ages: ClassVar[tuple[str, ...]] = ()  # numbers that the age of a reading makes, too (decision 0035)
     copies: ClassVar[tuple[str, ...]] = ()  # numbers that do, to first order about none, what another does
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
-    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments` and
-    # a calibration look for it, and no core is fitted beside it unless the ship file has it
+    # whether the readings show it and the ship's motion hardly does: no core is fitted beside it unless the
+    # ship file has it; and whether a diagnosis weighs it only where kinematics ask for it, or as a change
     kinematic: ClassVar[bool] = False
-    # of these, whether a diagnosis weighs it only where kinematics ask for it, or as a change of the file's
     suspected_first: ClassVar[bool] = False
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
     # share of its length by which its side force may attack elsewhere than its form has it (one sd)
