@@ -120,7 +120,7 @@ class Effect:
     belongs_to: ClassVar[str] = "ship"
     needs: ClassVar[tuple[str, ...]] = ()  # fields of Situation without which the effect is switched off
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
-    every_day: ClassVar[tuple[str, ...]] = ()  # numbers of which each day brings a little: no air stands still
+    every_day: ClassVar[tuple[str, ...]] = ()  # numbers of which each day brings a little
     # standard deviation of its numbers between voyages, in widths of what a healthy ship has (decision 0030)
     varies: ClassVar[float] = 0.0
     ages: ClassVar[tuple[str, ...]] = ()  # numbers that the age of a reading makes, too (decision 0035)
