@@ -18,7 +18,7 @@ name = "harbour-effects"
 version = "1.0"
 [project.entry-points."twin.effects"]
 Derrick = "harbour_effects.derrick:Derrick"
-SlowGyro = "harbour_effects.slow_gyro:SlowGyro"
+GroundSpeedScale = "harbour_effects.ground_speed_scale:GroundSpeedScale"
 RotorSail = "harbour_effects.rotor_sail:RotorSail"
 """
 DERRICK = '''"""A derrick that slews to and fro with a load over the side.
@@ -42,25 +42,23 @@ class Derrick(Force):
     def force(self, s, ship):
         return ForceVector(N=self.moment * sin(2.0 * pi / 300.0 * s.t))
 '''
-SLOW_GYRO = '''"""A rate gyro that is slow.
+GROUND_SPEED_SCALE = '''"""A speed over ground whose scale is off.
 
-r_m = r - lag dr/dt
+(u, v)_m = (1 + scale) (u, v)
 """
 from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
 
 
-class SlowGyro(SensorFault):
-    """The rate gyro shows how the ship turned some time ago."""
+class GroundSpeedScale(SensorFault):
+    """The receiver shows a fixed percentage too much or too little speed over ground; its positions are right."""
 
-    needs = ("r",)
-    attitude = True
     source = "a test"
-    lag: float = param(0.5, unit="s", lo=-5.0, hi=20.0, sd=1.0, doc="how long ago it turned as it shows")
+    scale: float = param(0.02, unit="-", lo=-0.2, hi=0.2, sd=0.02, doc="shown speed over the true one, less 1")
 
     def read(self, s, ship):
-        return replace(s, r=s.r - self.lag * s.r_dot)
+        return replace(s, u=s.u * (1.0 + self.scale), v=s.v * (1.0 + self.scale))
 '''
 ROTOR_SAIL = '''"""A rotor sail: a lift across the air past the ship (Magnus).
 
@@ -86,10 +84,15 @@ class RotorSail(Force):
         q = 0.5 * 1.225 * ship.A_L * self.lift * hypot(u, v)
         return ForceVector(X=q * v, Y=-q * u)
 '''
-FILES = {"__init__": "", "derrick": DERRICK, "slow_gyro": SLOW_GYRO, "rotor_sail": ROTOR_SAIL}
+FILES = {
+    "__init__": "",
+    "derrick": DERRICK,
+    "ground_speed_scale": GROUND_SPEED_SCALE,
+    "rotor_sail": ROTOR_SAIL,
+}
 # prior widths of it that are hidden, and the wind that is recorded [m/s], which turns by half a circle: across a
 # steady one a rotor sail is a pull from a fixed bearing
-HIDDEN = {"Derrick": (3.0, None), "SlowGyro": (3.0, None), "RotorSail": (3.0, 16.0)}
+HIDDEN = {"Derrick": (3.0, None), "GroundSpeedScale": (3.0, None), "RotorSail": (3.0, 16.0)}
 SAIL = """
 import json, sys
 from math import pi
@@ -170,7 +173,7 @@ def test_a_calibration_keeps_what_is_usual_of_the_effects_of_others(calibrated):
     numbers; of the weather how strong it was, without a number, for tomorrow's is another one."""
     usual = calibrated[1]
     owners = {label.partition(".")[0] for label in usual["labels"]}
-    assert {"Derrick", "SlowGyro"} <= owners and "RotorSail" not in owners
+    assert {"Derrick", "GroundSpeedScale"} <= owners and "RotorSail" not in owners
     assert usual["weather"]["RotorSail"] > 0.0
 
 

@@ -74,9 +74,11 @@ def test_an_effect_of_nobody_is_refused_when_it_is_declared():
 def test_what_the_readings_alone_show_is_no_cause_of_a_diagnosis_unless_it_is_in_the_file_or_asked_for(
     make, kvlcc2
 ):
-    """Expected: neither candidate, nor not judged, nor a usual error of a calibration; `twin add` can ask."""
-    kinematic = {e.__name__ for e in BUILT_IN if e.kinematic}
+    """Expected: neither candidate, nor not judged, nor a usual error of a calibration; `twin add` can ask. A
+    gyro's scale is weighed, but no error of a calibration either."""
+    kinematic = {e.__name__ for e in BUILT_IN if e.suspected_first}
     assert kinematic == {"HeadingLag", "CompassDeviation", "ReceiverSmoothing"}
+    assert {e.__name__ for e in BUILT_IN if e.kinematic} == {*kinematic, "GyroScale"}
     sailed = [track(make(seconds=600.0), kvlcc2)]
     case, asked = of_tracks(sailed, kvlcc2), of_tracks(sailed, kvlcc2, asked=[find("HeadingLag")])
     assert kinematic.isdisjoint(case.catalogue) and kinematic.isdisjoint(u.owner for u in case.unknowns)
@@ -84,4 +86,5 @@ def test_what_the_readings_alone_show_is_no_cause_of_a_diagnosis_unless_it_is_in
     assert set(asked.candidates) - set(case.candidates) == {"HeadingLag"}
     slow = of_tracks(sailed, kvlcc2.with_effects(find("HeadingLag")(lag=1.0)))
     assert kinematic & set(slow.candidates) == {"HeadingLag"}
-    assert kinematic.isdisjoint(u.owner for u in lasting(Model.of(kvlcc2), catalogue()))
+    usual = {u.owner for u in lasting(Model.of(kvlcc2), catalogue())}
+    assert "GyroScale" in case.candidates and usual.isdisjoint({*kinematic, "GyroScale"})

@@ -83,10 +83,12 @@ def _joined(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> Sea
     own = replace(_fitted(first, chosen), expected_error_m=left.expected_error_m)
     own = replace(own, open_loop_error_m=held_out_error(case, own))
     path = replace(first.path, found={**first.path.found, chosen: own})
+    weighed = path.with_path(own.hypothesis)
+    others = [h for h in first.weighed if (h.effects, h.scenario) != (chosen, weighed.scenario)]
     of_new = {n: again.weights.effects[n] for n in new}
     return replace(
         first,
-        weighed=sorted([*first.weighed, path.with_path(own.hypothesis)], key=lambda h: -h.log_weight),
+        weighed=sorted([weighed, *others], key=lambda h: -h.log_weight),
         found={**first.found, chosen: own},
         path=path,
         weights=replace(first.weights, effects={**first.weights.effects, **of_new}, best=own.hypothesis),
