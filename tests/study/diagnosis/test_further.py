@@ -60,7 +60,10 @@ def test_the_whole_takes_its_place_among_the_rivals_with_the_evidence_of_its_pat
     assert weights == sorted(weights, reverse=True)
     (entry,) = (h for h in whole.weighed if h.effects == whole.joined and h.scenario == _scenario(whole))
     own = whole.found[whole.joined].hypothesis
-    assert entry.log_weight == whole.path.with_path(own).log_weight < own.log_weight
+    assert entry.log_weight == whole.path.with_path(own).log_weight
+    off = replace(whole.found[whole.joined], open_loop_error_m=1e3)
+    astray = replace(whole.path, found={**whole.path.found, whole.joined: off})
+    assert astray.with_path(own).log_weight < entry.log_weight <= own.log_weight
 
 
 def _scenario(told):
