@@ -30,9 +30,9 @@ tests: budget others  ## pytest: what is inside its budget, alone; then the rest
 budget: $(VENV)/.development
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 
-# on all cores, four processes at most
+# one process more than cores, for a third of the service's tests is waiting; four at most
 others: $(VENV)/.development
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --ignore tests/bench/test_tick.py
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $$($(BIN)/python -c "import os; print(min(4, os.cpu_count() + 1))") --dist loadfile --ignore tests/bench/test_tick.py
 
 paper: $(VENV)/.development  ## the paper's tables in small, printed: two minutes
 	OMP_NUM_THREADS=1 $(BIN)/twin-bench paper --quick

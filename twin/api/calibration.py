@@ -149,10 +149,11 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     why = refusal(ship, [e | far for e, far in by_horizon], first.core.unexcited)
     if words == LAST and not why:
         tell("once more, with every voyage")
-        last = fitted_core(every, held, ship, tell, first.chosen.way)
+        last = fitted_core(every, held, ship, tell, first.chosen.way, first.core.noise_model)
     done = last.calibrated(tell, first)
     r, why = done.result, why or away_on_references(done.ship, last.core.unexcited)
-    found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
+    asked = (r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
+    found = doubts(*asked, len(last.core.tracks))
     said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
     return Calibration(ship if why else done.ship, data=r | said)
 

@@ -40,3 +40,11 @@ def test_several_of_them_are_said_in_the_plural():
     (both,) = told({"SteeringLag.delay": 1.6, "PropellerWalk.c_n": 1.2, "Wind.c_x": 0.4})
     assert "SteeringLag.delay (1.6 times its usual width), PropellerWalk.c_n" in both
     assert "differ so much" in both and "Wind.c_x" not in both
+
+
+@pytest.mark.parametrize(
+    ("voyages", "begins"), [(1, ["1 reference voyage: "]), (4, ["4 reference voyages: "]), (5, [])]
+)
+def test_few_reference_voyages_are_said_to_be_few(voyages, begins):
+    said = doubts([], [FELL], (0.03, 0.03, 0.03), voyages=voyages)
+    assert len(said) == len(begins) and all(s.startswith(b) for s, b in zip(said, begins, strict=True))

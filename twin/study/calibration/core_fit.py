@@ -26,6 +26,7 @@ from twin.study.calibration.usual import usual
 from twin.study.calibration.ways import FittedShip, best_way
 from twin.study.estimation.columns import Unknown, core_unknowns
 from twin.study.estimation.fit import Fit, fit
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.reference.derivatives import first_prior, informed_by, noted, with_derivatives
 from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.sailed import Sailed
@@ -96,17 +97,19 @@ def fitted_core(
     ship: Ship,
     progress: Callable[[str], None] = lambda text: None,
     by: str | None = None,
+    begun: NoiseModel | None = None,
 ) -> FittedCore:
     """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
-    one of FITTED_BY; None: the one that predicts what was held out better."""
+    one of FITTED_BY; None: the one that predicts what was held out better. `begun`: where the search for the
+    noise model begins; None: as for any ship."""
     first, sailed = ship, [s.track for s in fitted]
     progress("asking how the instruments go together, whatever the ship is")
     own = own_instruments(fitted, ship)
     ship = own.ship
-    core, curve = _beside_its_compass(sailed, ship, progress)
+    core, curve = _beside_its_compass(sailed, ship, progress, begun)
     if core.antenna is not None:
         progress("fitting again, with the antenna where it was found")
-        core = _with_antenna(core.antenna, sailed, ship, progress, curve)
+        core = _with_antenna(core.antenna, sailed, ship, progress, curve, begun)
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
     chosen = best_way(
@@ -127,16 +130,16 @@ def fitted_core(
 
 
 def _beside_its_compass(
-    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
+    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], begun: NoiseModel | None
 ) -> tuple[Core, tuple[Unknown, ...]]:
     """The core, and the numbers of the compass's deviation that were fitted beside it, if the voyages ask for
     them."""
     rough = _rough(sailed, ship, progress)
     if not (curve := rough.asked):
-        return _core(rough, progress), ()
+        return _core(rough, progress, begun), ()
     del rough  # its columns are large
     progress("fitting again, with a compass that deviates with the heading")
-    return _core(_rough(sailed, _deviating(ship), progress, curve), progress), curve
+    return _core(_rough(sailed, _deviating(ship), progress, curve), progress, begun), curve
 
 
 def _deviating(ship: Ship) -> Ship:
@@ -150,11 +153,12 @@ def _with_antenna(
     ship: Ship,
     progress: Callable[[str], None],
     curve: tuple[Unknown, ...],
+    begun: NoiseModel | None,
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
     of its own, and had bent the core."""
-    begun = _deviating(ship) if curve else ship
-    found = _core(_rough(sailed, begun.with_effects(first), progress, curve), progress)
+    plain_ship = _deviating(ship) if curve else ship
+    found = _core(_rough(sailed, plain_ship.with_effects(first), progress, curve), progress, begun)
     of_antenna = type(first)
     antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
     # until predictions are better with the other (`placed`)
@@ -198,11 +202,12 @@ def _rough(
     return RoughCore(ship, tracks, rough, curve, own_deviation(tracks, rough, known, TEMPER))
 
 
-def _core(rough: RoughCore, progress: Callable[[str], None]) -> Core:
+def _core(rough: RoughCore, progress: Callable[[str], None], start: NoiseModel | None) -> Core:
     """The core under the noise model that these voyages ask for."""
     ship, tracks, begun, unknowns = rough.ship, rough.tracks, rough.fit, rough.fit.unknowns
     progress("estimating the noise model")
-    noise_model, temper = structural_noise(begun.lines, unknowns), temper_of(begun.normal, unknowns)
+    noise_model = structural_noise(begun.lines, unknowns, start)
+    temper = temper_of(begun.normal, unknowns)
     progress("fitting again with this noise model")
     found = fit(tracks, begun.model, unknowns, of_ship(ship), noise_model, temper=temper, smooth=True)
     searched = (*searched_parts(ship), *([PARTS["compass"]] if rough.curve else []))

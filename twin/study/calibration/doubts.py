@@ -16,6 +16,7 @@ LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 BLIND = 1.0
 STRAIGHTENS = {"gamma_v": 1.0, "gamma_r": -1.0}  # the sign that a hull gives them
 ON_EVERY_HULL = {"Y_uv": "drift pushes it aside", "N_ur": "its own turning is damped"}  # by its lift
+ENOUGH = 5  # reference voyages from which twin diagnose names more (docs/results/judgement.md)
 NIL = 0.01  # of what its particulars give, below which a derivative is as good as none
 WRONG_SIGN_SE = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
@@ -27,9 +28,11 @@ def doubts(
     share: Sequence[float],
     usual: Sequence[Mapping[str, Any]] = (),
     between: Mapping[str, float] = MappingProxyType({}),
+    voyages: int = ENOUGH,
 ) -> list[str]:
     """Sentences; none when the calibration is as it should be. `usual`: lasting effects that it shows;
-    `between`: by how many widths of their priors numbers differ from voyage to voyage."""
+    `between`: by how many widths of their priors numbers differ from voyage to voyage; `voyages`: how many
+    it was fitted to."""
     return [
         *_stopped(derivatives),
         *_backwards(derivatives),
@@ -38,6 +41,7 @@ def doubts(
         *_coarse(share),
         *_ordered(usual),
         *_blind(between),
+        *_few(voyages),
     ]
 
 
@@ -145,4 +149,14 @@ def _blind(between: Mapping[str, float]) -> list[str]:
     return [
         f"{told} {differ} so much between these voyages that a fault of {its} kind will hardly be seen: was "
         "something wrong on one of them?"
+    ]
+
+
+def _few(voyages: int) -> list[str]:
+    if voyages >= ENOUGH:
+        return []
+    return [
+        f"{voyages} reference voyage{'s' * (voyages > 1)}: of a ship that was calibrated to {ENOUGH} or 6 "
+        "twin diagnose names more causes: give more zigzags, circles and changes of speed, on calm days or "
+        "with the wind recorded"
     ]

@@ -8,15 +8,17 @@ from typing import NamedTuple
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
 # first words of what is told, and seconds of one core for four voyages of twenty minutes at 10 Hz
+NOISE_MODEL = "estimating the noise model"
 CORE_STAGES = {
-    "fitting the core": 4.1,
+    "fitting the core": 4.5,
     "testing again whether waves": 2.0,
     "testing whether wind": 0.1,
-    "testing whether the compass": 0.2,
-    "estimating the noise model": 5.5,
-    "fitting again with this noise model": 2.1,
+    "testing whether the compass": 0.4,
+    NOISE_MODEL: 10.5,
+    "fitting again with this noise model": 2.8,
 }
-FIT_STAGES = {"asking how the instruments": 3.8, **CORE_STAGES}
+BEGUN_NEAR = 0.3  # of its time: the second fit's noise model is looked for from where the first one's ended
+FIT_STAGES = {"asking how the instruments": 3.6, **CORE_STAGES}
 AGAIN = "fitting again, with"  # the core once more, with a part that was found
 PATH, ONCE_MORE, BASELINE = (
     "fitting along the path",
@@ -50,7 +52,7 @@ class Stages:
         self._tell, self._clock, self._began, self._every = tell, clock, clock(), every or 1.0
         first = [Planned(*stage) for stage in FIT_STAGES.items()]
         second = [] if every is None else self._once_more(first)
-        self._plan = [*first, Planned(PATH, 1.0), *second, Planned(BASELINE, 7.5, self._every)]
+        self._plan = [*first, Planned(PATH, 1.0), *second, Planned(BASELINE, 8.5, self._every)]
         self._at = -1
         self._took: dict[
             str, float
@@ -69,7 +71,9 @@ class Stages:
 
     def _once_more(self, first: Sequence[Planned]) -> list[Planned]:
         """The stages of the second fit, which are those of the first."""
-        return [Planned(ONCE_MORE, 0.0), *(p._replace(every=self._every) for p in first)]
+        shares = [BEGUN_NEAR if p.words == NOISE_MODEL else 1.0 for p in first]
+        again = [p._replace(every=k * self._every) for p, k in zip(first, shares, strict=True)]
+        return [Planned(ONCE_MORE, 0.0), *again]
 
     def _begun_again(self) -> None:
         """The core once more, in place of what was left of it as it was; in a second fit, too, that is still

@@ -8,6 +8,7 @@ from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import waves_in_words
+from twin.study.reference.weather_baseline import HARDER
 from twin.study.track.jumps import jumps_in_words
 
 PUSHED = 3  # moments that are told
@@ -24,10 +25,10 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     for c in result["candidates"]:
         lines += candidate_lines(c) + _not_named(c, result)
     lines += weather_lines(result["weather"])
-    chances = result["probabilities"]
+    nothing, unknown = (percent(result["probabilities"][k]) for k in ("nothing_missing", "unknown"))
     lines.append(
-        f"nothing missing: {percent(chances['nothing_missing'])}   something unknown: "
-        f"{percent(chances['unknown'])}   (each as often as on random ships with such an answer)"
+        f"nothing of ship and instruments missing: {nothing}   something unknown: {unknown}   (each as often "
+        "as on random ships with such an answer)"
     )
     lines.append(healthy_in_words(result))
     if result["next_manoeuvre"]:
@@ -36,7 +37,8 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"{n['effect']} cannot be judged without {' and '.join(n['lacks'])}." for n in result["not_judged"]
     ]
     lines += [
-        f"{n} was no stronger than on the reference voyages: it is allowed for, and not called missing."
+        f"{n} pushed it no more than {as_given(HARDER)} times as hard as on the reference voyages: it is "
+        "allowed for, and not called missing."
         for n in result["as_on_references"]
     ]
     lines += [*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"])]

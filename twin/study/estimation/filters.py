@@ -129,7 +129,7 @@ class Filters:
         inverse = lower_inverse(L)
         white, V = inverse.astype(LIGHT) @ E, inverse @ HC
         X += V.swapaxes(-1, -2).astype(LIGHT) @ white
-        C -= V.swapaxes(-1, -2) @ V
+        C -= V.swapaxes(-1, -2) @ V.copy()  # a product with itself takes BLAS twice as long
         return white, _diagonal(L)
 
     def advance(self, k: int) -> None:

@@ -10,6 +10,7 @@ and low-frequency motion: Fossen (2021), sec. 13.2."""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
+from twin.study.estimation.in_order import likeliest_in_order
 from twin.study.estimation.innovations import NoiseModel, innovate_each
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
@@ -87,13 +89,18 @@ def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> 
         each = innovate_each([[line] for line in lines], [noise_model.scaled(white=k) for k in WHITES])
         return [max(evidence(n, sd) for n in normals) for normals in each]
 
-    tried = [(n, k) for n in range(len(rough)) for k in STRENGTHS]
-    as_strong = likely(*(replace(lines[n], track=_times(lines[n].track, k)) for n, k in tried))
+    def as_strong(line: Linear, k: float) -> float:
+        return likely(replace(line, track=_times(line.track, k)))[0]
+
+    none, *weakest = likely(calm, *lines)
+    tried = [
+        likeliest_in_order(partial(as_strong, line), (x, STRENGTHS[0]), STRENGTHS[1:] if x > none else ())
+        for line, x in zip(lines, weakest, strict=True)
+    ]
     proof = TEMPER * WAVES_LOG_BAYES if at_sea(track, model) else 0.0
-    as_strong = [x - proof * one_frequency(rough[n]) for x, (n, _) in zip(as_strong, tried, strict=True)]
-    best = int(np.argmax(as_strong))
-    which, strength = tried[best]
-    return _times(rough[which], BEYOND * strength), as_strong[best], likely(calm)[0]
+    as_likely = [x - proof * one_frequency(t) for (x, _), t in zip(tried, rough, strict=True)]
+    best = int(np.argmax(as_likely))
+    return _times(rough[best], BEYOND * tried[best][1]), as_likely[best], none
 
 
 def _times(track: Track, strength: float) -> Track:

@@ -20,7 +20,8 @@ from twin.physics.model import Model
 from twin.physics.ship_like import ShipLike
 from twin.study.estimation.columns import Unknown, with_values
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
-from twin.study.estimation.innovations import NoiseModel, innovate, innovate_each
+from twin.study.estimation.in_order import likeliest_in_order
+from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.track.track import Track
@@ -135,7 +136,7 @@ def _geared(
 
     same = not_behind(gears, unknowns, model.ship)
     first = [linearise(t, model.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
-    none = (evidence(innovate(first, [NoiseModel()])[0], sd) / temper, 0.0, 0.0)
+    none = evidence(innovate(first, [NoiseModel()])[0], sd) / temper
     first = [line.only(np.array(same, int)) for line in first]
 
     def lines_of(later: float, slower: float) -> list[Linear]:
@@ -145,13 +146,12 @@ def _geared(
             for t, line in zip(tracks, first, strict=True)
         ]
 
-    def likeliest(gears: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
-        each = innovate_each((lines_of(*gear) for gear in gears), [NoiseModel()])
-        return max((evidence(n, sd) / temper, *gear) for (n,), gear in zip(each, gears, strict=True))
+    def likely(later: float, slower: float) -> float:
+        return evidence(innovate(lines_of(later, slower), [NoiseModel()])[0], sd) / temper
 
-    _, _, slower = slow = max(none, likeliest([(0.0, k) for k in SLOWER]))
-    score, later, slower = max(slow, likeliest([(k, slower) for k in LATER]))
-    return with_gear(later, slower) if score > none[0] + GEAR_LOG_BAYES else model
+    score, slower = likeliest_in_order(lambda k: likely(0.0, k), (none, 0.0), SLOWER)
+    score, later = likeliest_in_order(lambda k: likely(k, slower), (score, 0.0), LATER)
+    return with_gear(later, slower) if score > none + GEAR_LOG_BAYES else model
 
 
 def not_behind(gears: Gears, unknowns: Sequence[Unknown], ship: ShipLike) -> list[int]:

@@ -92,8 +92,9 @@ def structural_noise(
     lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel | None = None
 ) -> NoiseModel:
     """The most probable noise model of these reference voyages (linearised about the fitted model): what the
-    core alone leaves."""
-    return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS, receiver=True)
+    core alone leaves. A receiver's error is asked for whatever `start` holds of it."""
+    begun = replace(start or NoiseModel(), velocity_error=0.0)
+    return _ascended(lines, unknowns, begun, 1.0, MOST_SEGMENTS, receiver=True)
 
 
 def structural_noise_beside(
