@@ -57,9 +57,34 @@ def test_instruments_by_hand(ship):
         0.5,
         find("SensorDelay")(delay=0.0, turned=0.5),
     )
-    assert (late.u, late.v) == (pytest.approx(4 - 0.05 - 0.005), pytest.approx(-0.5 + 0.025 - 0.04))
+    # turned by 0.01 rad: 3.95 x 0.99995 - 0.475 x 0.0099998, -0.475 x 0.99995 - 3.95 x 0.0099998
+    assert (late.u, late.v) == (pytest.approx(3.9450526), pytest.approx(-0.5144756))
     assert find("GyroBias")(bias=0.001).read(s, ship).r == pytest.approx(0.021)
     assert find("GyroScale")(scale=-0.05).read(s, ship).r == pytest.approx(0.019)
+
+
+def test_a_late_velocity_is_turned_by_what_the_ship_turned_since(ship):
+    """Test: a boat at 4 m/s whose rate of turn grows to 0.15 rad/s with a time constant of 4 s, a receiver 2 s late,
+    its velocity turned by the present heading; asked at the moment when it is shown and at the one that it shows.
+    Expected: aside what the exact angle gives, within 0.06 m/s; to first order it is off by more than 0.2 m/s."""
+
+    def psi(t):
+        return 0.15 * (t - 4.0 * (1.0 - np.exp(-t / 4.0)))
+
+    t, late = np.linspace(2.0, 20.0, 37), find("SensorDelay")(delay=2.0, turned=2.0)
+    exact = -4.0 * np.sin(psi(t) - psi(t - 2.0))
+    for then, effect, least in ((t, late, 0.06), (t - 2.0, late.prompt()[1], 0.06)):
+        r, r_dot = 0.15 * (1.0 - np.exp(-then / 4.0)), 0.15 / 4.0 * np.exp(-then / 4.0)
+        shown = effect.read(Situation(psi=psi(then), u=4.0, v=0.0, r=r, r_dot=r_dot), ship)
+        off, by_rate = np.abs(shown.v - exact).max(), np.abs(-8.0 * r - exact).max()
+        assert off < least and by_rate > 0.2, (off, by_rate)
+
+
+def test_an_antennas_speed_changes_with_the_turning(ship):
+    """A receiver that is late or smooths shows that change: 20 m ahead, 4 m to starboard, 0.003 rad/s2."""
+    s = Situation(psi=radians(30), u=4.0, v=-0.5, r=0.02, u_dot=0.1, v_dot=-0.05, r_dot=0.003)
+    mast = find("AntennaOffset")(ahead=20.0, starboard=4.0, above=0.0).read(s, ship)
+    assert (mast.u_dot, mast.v_dot) == (pytest.approx(0.1 - 0.012), pytest.approx(-0.05 + 0.06))
 
 
 def test_a_slow_compass_by_hand(ship):

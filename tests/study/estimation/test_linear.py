@@ -175,3 +175,16 @@ def test_a_late_receiver_shows_a_wave_as_it_was_then_on_each_stretch_by_itself(j
     assert np.abs(then[settled, 0] - np.sin(omega * (moments[settled] - late_s))).max() < 0.25
     assert np.abs(then[:, 0]).max() < 3.0  # before a stretch begins, along a straight line
     assert later(part, shown, 0.0) is shown
+
+
+@pytest.mark.parametrize("late_s", [3.0, -3.0])
+def test_beyond_its_ends_a_late_place_turns_on_as_the_ship_did(judged, late_s):
+    """Test: a circle at 4 m/s and 0.05 rad/s, shown 3 s late and 3 s early. Expected: on the circle all the way, to
+    4 cm; a straight line would leave it by 0.8 m."""
+    t, *_ = judged
+    part = t.part(0, 200)
+    turned = 0.05 * part.t
+    shown = np.zeros((200, 8))
+    shown[:, 0], shown[:, 1], shown[:, 5] = 80.0 * np.sin(turned), -80.0 * np.cos(turned), 0.05
+    then = later(part, shown, late_s)
+    assert np.abs(np.hypot(then[:, 0], then[:, 1]) - 80.0).max() < 0.05

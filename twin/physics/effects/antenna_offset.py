@@ -6,6 +6,7 @@ above the axis of roll, from where heel phi carries it aside (a_z = 0 where roll
 rate):
 x_m = x + a_x cos(psi) - a sin(psi),   y_m = y + a_x sin(psi) + a cos(psi),   a = a_y + a_z sin(phi)
 u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p
+and their rates of change, which a receiver that is late or smooths shows, grow by -a dr/dt and a_x dr/dt.
 """
 
 from dataclasses import replace
@@ -62,4 +63,6 @@ class AntennaOffset(SensorFault):
             y=s.y + self.ahead * si + aside * c,
             u=s.u - aside * s.r,
             v=s.v + self.ahead * s.r + swung,
+            u_dot=s.u_dot - aside * s.r_dot,
+            v_dot=s.v_dot + self.ahead * s.r_dot,
         )

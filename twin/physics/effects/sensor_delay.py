@@ -1,13 +1,15 @@
-"""GNSS is late: what it says now was true `delay` seconds ago; the place to second order in the delay, the
-velocity to first.
+"""GNSS is late: what it says now was true `delay` seconds ago.
 
     (x, y)_m = (x, y) - delay R(psi - r delay/2) (u - du/dt delay/2, v - dv/dt delay/2)
         the velocity of half the delay ago
-    u_m = u - delay du/dt + turned r v
-    v_m = v - delay dv/dt - turned r u
+    u_m = u_late cos(a) + v_late sin(a),   u_late = u - delay du/dt
+    v_m = v_late cos(a) - u_late sin(a),   v_late = v - delay dv/dt
+    a = turned (r + (turned/2 - delay) dr/dt)
+        what the ship turns from the moment that is shown to the one in which it is turned
 `turned` = delay where a late velocity over ground is turned into body axes by the present heading (a
     compass), and 0 where
-the receiver does so itself by an attitude of its own (an inertial unit).
+the receiver does so itself by an attitude of its own (an inertial unit). Second order in the turning: of
+first order alone, a boat that turns fast would seem to have its antenna elsewhere.
 """
 
 from dataclasses import replace
@@ -43,15 +45,18 @@ class SensorDelay(SensorFault):
     )
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
-        d, half, turned = self.delay, 0.5 * self.delay, self.turned * s.r
+        d, half = self.delay, 0.5 * self.delay
         u, v, psi = s.u - half * s.u_dot, s.v - half * s.v_dot, s.psi - half * s.r
         c, si = cos(psi), sin(psi)
+        late_u, late_v = s.u - d * s.u_dot, s.v - d * s.v_dot
+        a = self.turned * (s.r + (0.5 * self.turned - d) * s.r_dot)
+        turned_c, turned_s = cos(a), sin(a)
         return replace(
             s,
             x=s.x - d * (u * c - v * si),
             y=s.y - d * (u * si + v * c),
-            u=s.u - d * s.u_dot + turned * s.v,
-            v=s.v - d * s.v_dot - turned * s.u,
+            u=late_u * turned_c + late_v * turned_s,
+            v=late_v * turned_c - late_u * turned_s,
         )
 
     def prompt(self) -> tuple[Number, SensorFault]:

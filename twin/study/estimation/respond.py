@@ -73,18 +73,30 @@ SATELLITES = [READINGS.index(name) for name in ("x", "y", "u", "v")]
 
 def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
     """The readings (N, 8), in SI, those of the satellites as they were so long ago: on each stretch of
-    consecutive steps, along a straight line before its first and behind its last."""
+    consecutive steps, before its first and behind its last the ship turns on as it did there."""
     if not late_s:
         return shown
     out = shown.copy()
     for a, b in stretches(track):
-        steps = np.arange(b - a)
-        at = steps - late_s / track.h
-        for j in SATELLITES if b - a > 1 else ():
-            x = shown[a:b, j]
-            before, behind = np.minimum(at, 0.0), np.maximum(at - steps[-1], 0.0)
-            out[a:b, j] = np.interp(at, steps, x) + before * (x[1] - x[0]) + behind * (x[-1] - x[-2])
+        if b - a > 1:
+            at = np.arange(b - a) - late_s / track.h
+            for j in SATELLITES[2:]:
+                out[a:b, j] = _beyond(shown[a:b, j], at)
+            turned = 0.5j * track.h * shown[a:b, 5]  # by half of a step, to starboard
+            place = _beyond(shown[a:b, 0] + 1j * shown[a:b, 1], at, turned)
+            out[a:b, 0], out[a:b, 1] = place.real, place.imag
     return out
+
+
+def _beyond(x: np.ndarray, at: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:
+    """`x` (N,) at the steps `at`: between its own by straight lines, beyond its ends as it changed in the
+    last step there, which turns on: by twice `turned` (N,), powers of e, in a step."""
+    first, last = (0.0, 0.0) if turned is None else (turned[0], turned[-1])
+    before, behind = np.minimum(at, 0.0), np.maximum(at - (x.size - 1), 0.0)
+    # from the middle of that step to the middle of the way
+    ahead_of_first = before * (x[1] - x[0]) * np.exp(first * (before - 1.0))
+    past_last = behind * (x[-1] - x[-2]) * np.exp(last * (behind + 1.0))
+    return np.asarray(np.interp(at, np.arange(x.size), x) + ahead_of_first + past_last)
 
 
 def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
