@@ -152,8 +152,8 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
         last = fitted_core(every, held, ship, tell, first.chosen.way, first.core.noise_model)
     done = last.calibrated(tell, first)
     r, why = done.result, why or away_on_references(done.ship, last.core.unexcited)
-    asked = (r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
-    found = doubts(*asked, len(last.core.tracks))
+    share, fitted_to = r["floor"]["share"], len(last.core.tracks)
+    found = doubts(r["derivatives"], r["held_out"], share, r["usual"], r["between_voyages"], fitted_to)
     said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
     return Calibration(ship if why else done.ship, data=r | said)
 

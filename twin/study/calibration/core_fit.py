@@ -97,19 +97,19 @@ def fitted_core(
     ship: Ship,
     progress: Callable[[str], None] = lambda text: None,
     by: str | None = None,
-    begun: NoiseModel | None = None,
+    start: NoiseModel | None = None,
 ) -> FittedCore:
     """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
-    one of FITTED_BY; None: the one that predicts what was held out better. `begun`: where the search for the
+    one of FITTED_BY; None: the one that predicts what was held out better. `start`: where the search for the
     noise model begins; None: as for any ship."""
     first, sailed = ship, [s.track for s in fitted]
     progress("asking how the instruments go together, whatever the ship is")
     own = own_instruments(fitted, ship)
     ship = own.ship
-    core, curve = _beside_its_compass(sailed, ship, progress, begun)
+    core, curve = _beside_its_compass(sailed, ship, progress, start)
     if core.antenna is not None:
         progress("fitting again, with the antenna where it was found")
-        core = _with_antenna(core.antenna, sailed, ship, progress, curve, begun)
+        core = _with_antenna(core.antenna, sailed, ship, progress, curve, start)
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
     chosen = best_way(
@@ -130,16 +130,16 @@ def fitted_core(
 
 
 def _beside_its_compass(
-    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], begun: NoiseModel | None
+    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], start: NoiseModel | None
 ) -> tuple[Core, tuple[Unknown, ...]]:
     """The core, and the numbers of the compass's deviation that were fitted beside it, if the voyages ask for
     them."""
     rough = _rough(sailed, ship, progress)
     if not (curve := rough.asked):
-        return _core(rough, progress, begun), ()
+        return _core(rough, progress, start), ()
     del rough  # its columns are large
     progress("fitting again, with a compass that deviates with the heading")
-    return _core(_rough(sailed, _deviating(ship), progress, curve), progress, begun), curve
+    return _core(_rough(sailed, _deviating(ship), progress, curve), progress, start), curve
 
 
 def _deviating(ship: Ship) -> Ship:
@@ -153,12 +153,12 @@ def _with_antenna(
     ship: Ship,
     progress: Callable[[str], None],
     curve: tuple[Unknown, ...],
-    begun: NoiseModel | None,
+    start: NoiseModel | None,
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
     of its own, and had bent the core."""
-    plain_ship = _deviating(ship) if curve else ship
-    found = _core(_rough(sailed, plain_ship.with_effects(first), progress, curve), progress, begun)
+    begun = _deviating(ship) if curve else ship
+    found = _core(_rough(sailed, begun.with_effects(first), progress, curve), progress, start)
     of_antenna = type(first)
     antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
     # until predictions are better with the other (`placed`)

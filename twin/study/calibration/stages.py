@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
-# first words of what is told, and seconds of one core for four voyages of twenty minutes at 10 Hz
 NOISE_MODEL = "estimating the noise model"
+BEGUN_NEAR = 0.3  # of its time: the second fit's noise model is looked for from where the first one's ended
+# first words of what is told, and seconds of one core for four voyages of twenty minutes at 10 Hz
 CORE_STAGES = {
     "fitting the core": 4.5,
     "testing again whether waves": 2.0,
@@ -17,7 +18,6 @@ CORE_STAGES = {
     NOISE_MODEL: 10.5,
     "fitting again with this noise model": 2.8,
 }
-BEGUN_NEAR = 0.3  # of its time: the second fit's noise model is looked for from where the first one's ended
 FIT_STAGES = {"asking how the instruments": 3.6, **CORE_STAGES}
 AGAIN = "fitting again, with"  # the core once more, with a part that was found
 PATH, ONCE_MORE, BASELINE = (
