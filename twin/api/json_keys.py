@@ -71,6 +71,7 @@ CANDIDATE = (
         "one is likely",
     ),
     *when("one is likely", under("parameters[]", ESTIMATE)),
+    JsonKey("parameters[].meaning", "", "what the number is, and of what a share is one", "one is likely"),
     JsonKey("parameters[].in_ship_file", "of the number", "what the ship file has", "it has the effect"),
     JsonKey("parameters[].at_box_end", "", "whether the end of its box stopped the number", FACTS),
     JsonKey(

@@ -66,7 +66,7 @@ function curve(numbers) {
 function parameter(number) {
   const p = readable(number), lo = Math.min(p.low95, 0), hi = Math.max(p.high95, 0), P = (x) => `${(100 * (x - lo)) / (hi - lo || 1)}%`;
   const draw = el("span.whisker", null, el(".z", { style: { left: P(0) } }), el(".w", { style: { left: P(p.low95), width: `calc(${P(p.high95)} - ${P(p.low95)})` } }), el(".p", { style: { left: P(p.value) } }));
-  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, withUnit(num(p.value), p)), el("span.note", null, `95 %: ${num(p.low95)} to ${withUnit(num(p.high95), p)}${p.in_ship_file === undefined ? "" : `; ship file ${num(p.in_ship_file)}`}`));
+  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, withUnit(num(p.value), p)), el("span.note", null, `95 %: ${num(p.low95)} to ${withUnit(num(p.high95), p)}${p.in_ship_file === undefined ? "" : `; ship file ${num(p.in_ship_file)}`}`), p.meaning ? el("span.note", { style: { gridColumn: "1 / -1" } }, p.meaning) : null);
 }
 
 function manoeuvreSection() {

@@ -96,14 +96,16 @@ def test_numbers_that_no_chance_makes_are_told_by_their_distance(judged):
     assert clear(judged, "PropellerWalk", [60.0, 0.0], np.eye(2)) == pytest.approx(60.0, abs=0.5)
 
 
-def test_the_text_says_why_a_cause_is_named_of_which_no_number_is_clear_alone():
-    """Expected: of what the ship file has, another word; of others, nothing."""
-    number = {"name": "a", "value": 0.7, "low95": -0.3, "high95": 1.7, "unit": "m", "at_box_end": False}
-    cause = {
+A_LENGTH = {"name": "a", "value": 0.7, "low95": -0.3, "high95": 1.7, "unit": "m", "at_box_end": False,
+            "meaning": "ahead of midship"}  # fmt: skip
+
+
+def cause_with(numbers):
+    return {
         "effect": "PropellerWalk",
         "probability": 0.9,
         "together_with": [],
-        "parameters": [number],
+        "parameters": numbers,
         "typical_force": {"X_N": 0.0, "Y_N": 0.0, "N_Nm": 0.0},
         "error_horizon_s": 60.0,
         "error_without": 5.0,
@@ -112,7 +114,20 @@ def test_the_text_says_why_a_cause_is_named_of_which_no_number_is_clear_alone():
         "cannot_be_told_from": [],
         "together_sd": 6.2,
     }
+
+
+def test_the_text_says_why_a_cause_is_named_of_which_no_number_is_clear_alone():
+    """Expected: of what the ship file has, another word; of others, nothing."""
+    cause = cause_with([A_LENGTH])
     assert "may be none" in "\n".join(candidate_lines(cause)) and "6.2" in "\n".join(candidate_lines(cause))
-    filed = cause | {"parameters": [number | {"in_ship_file": 0.1}]}
+    filed = cause | {"parameters": [A_LENGTH | {"in_ship_file": 0.1}]}
     assert "may be what the ship file has" in "\n".join(candidate_lines(filed))
     assert "alone" not in "\n".join(candidate_lines(cause | {"together_sd": None}))
+
+
+def test_a_size_without_a_unit_says_of_what_it_is_a_share():
+    """Expected: a number in metres says nothing more; a share is followed by what the number is."""
+    share = A_LENGTH | {"name": "loss", "unit": "-", "meaning": "share of the thrust that is lost"}
+    lines = candidate_lines(cause_with([share, A_LENGTH]))
+    assert "loss" in lines[1] and lines[2].strip() == "share of the thrust that is lost"
+    assert not any("midship" in line for line in lines)

@@ -117,6 +117,17 @@ def test_a_log_of_one_axis_is_judged_by_the_axis_it_has(sailed, make, kvlcc2):
     assert made.proof.proved and "sway_velocity_through_water_mps" not in made.fall.measure
 
 
+def test_a_number_of_which_nothing_that_was_recorded_tells_is_not_told(sailed, make, kvlcc2):
+    """Test: an antenna 40 m ahead; no roll was recorded, which alone would show its height. Expected: the file keeps
+    the height it has and says no interval of it."""
+    made = add(
+        kvlcc2, [find("AntennaOffset")], [sailed(make(find("AntennaOffset").absent(kvlcc2).but(ahead=40.0)))]
+    )
+    told = made.result["parameters"]["AntennaOffset"]
+    assert set(told) == {"ahead", "starboard"} and told["ahead"]["low95"] < 40.0 < told["ahead"]["high95"]
+    assert "low95" not in to_table(made.ship)["effects"]["AntennaOffset"].get("above", {})
+
+
 def test_two_effects_are_fitted_together(sailed, make, kvlcc2):
     hidden = [find("Current").absent(kvlcc2).but(east=0.5), find("HullFouling").absent(kvlcc2).but(extra=0.4)]
     made = add(

@@ -19,7 +19,7 @@ from twin.study.diagnosis.open_loop_check import plain
 from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
-from twin.study.estimation.respond import standard
+from twin.study.estimation.respond import shown_since, standard
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import likeliest
 from twin.study.track.segments import segments
@@ -81,9 +81,11 @@ def stretches(case: Case, found: Found) -> list[Moment]:
 
 
 def _in_one(line: Linear, theta: np.ndarray) -> Linear:
-    """The track with all that is known of the unknowns as a single column."""
+    """The track with all that is known of the unknowns as a single column, and without what a late receiver
+    showed of before its first step: a push at its end, to which it stands, would be none of the ship's."""
     turns = {0: sum(theta[j] * turn for j, turn in line.turns.items())} if line.turns else {}
-    return replace(line, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
+    e = shown_since(line.track, line.e, line.model.prompt()[0])
+    return replace(line, e=e, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
 
 
 def _tried(case: Case, lines: Sequence[Linear], noise_model: NoiseModel, lengths: float) -> list[Moment]:

@@ -98,6 +98,8 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
             f"          {p['name']:<{width}} {num(p['value'], 4):>11} {p['unit']:<5} "
             f"95 %: {num(p['low95'], 4)} to {num(p['high95'], 4)}{file}{end}"
         )
+        if not p["unit"] and p.get("meaning"):
+            lines.append(f"          {'':<{width}} {p['meaning']}")
     force = c["typical_force"]
     if say.force(force):
         lines.append(f"          typically    {say.force(force)}")

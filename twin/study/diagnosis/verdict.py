@@ -173,6 +173,7 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
                     "low95": float(np.clip(low, u.lo, u.hi)),
                     "high95": float(np.clip(high, u.lo, u.hi)),
                     "unit": u.unit,
+                    "meaning": params[u.name].doc,
                     "at_box_end": at_an_end(value, u.lo, u.hi, u.centre),
                 }
                 | ({"in_ship_file": u.centre} if name in case.present else {})

@@ -109,6 +109,15 @@ def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
     return out
 
 
+def shown_since(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
+    """The errors of `when_true` (N, 8) without those of before each stretch's first step, that stand at its
+    last ones: nothing was shown there (NaN)."""
+    out, steps = e.copy(), round(late_s / track.h)
+    for a, b in stretches(track) if steps else ():
+        out[max(a, b - steps) : b, SATELLITES] = np.nan
+    return out
+
+
 def stretches(track: Track) -> list[tuple[int, int]]:
     """From where to where its steps follow each other."""
     return list(pairwise([0, *(np.flatnonzero(np.diff(track.steps()) != 1) + 1), len(track)]))

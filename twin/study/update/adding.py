@@ -6,7 +6,7 @@ effect are integrated out as the reference voyages left them. The water and the 
 part of the ship: a stream, constant or slowly varying, and wind and sea that were recorded and that the model
 does not know, stand beside the named effects where they make the voyages likelier."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, refine, standing
 from twin.study.diagnosis.verdict import parameters
 from twin.study.estimation.box import at_an_end
+from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
 from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
@@ -211,33 +212,33 @@ def _relinearised(case: Case, chosen: Sets, start: Found | None) -> Found:
 
 
 def _numbers(case: Case, found: Found) -> list[Number]:
-    """Every number of the hypothesis, as the diagnosis tells it."""
+    """Every number of the hypothesis of which the recordings tell, as the diagnosis has it."""
     told: Posterior = sized(case, found)
-    out = []
-    for name in found.hypothesis.effects:
-        said = {str(p["name"]): p for p in parameters(case, told, name)}
-        for i, u in enumerate(case.effects):
-            if u.owner == name:
-                sd, p = u.sd * float(np.sqrt(told.covariance[i, i])), said.get(u.full_name)
-                value = in_file(u.centre + u.sd * float(found.posterior.z[i]), u.lo, u.hi)
-                low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
-                if p:
-                    low, high = float(p["low95"]), float(p["high95"])  # type: ignore[arg-type]
-                gained = abs(1.0 - float(found.posterior.covariance[i, i]))
-                out.append(
-                    Number(
-                        name,
-                        u.full_name,
-                        u.unit,
-                        value,
-                        sd,
-                        min(low, value),
-                        max(high, value),
-                        gained,
-                        at_an_end(value, u.lo, u.hi, u.centre),
-                    )
-                )
-    return out
+    said = {
+        f"{name}.{p['name']}": p for name in found.hypothesis.effects for p in parameters(case, told, name)
+    }
+    return [
+        _number(u, said[u.label], found.posterior, told, i)
+        for name in found.hypothesis.effects
+        for i, u in enumerate(case.effects)
+        if u.owner == name and u.label in said
+    ]
+
+
+def _number(u: Unknown, said: Mapping[str, Any], z: Posterior, told: Posterior, i: int) -> Number:
+    """Unknown `i` of the effects, with the interval that was `said` of it."""
+    value = in_file(u.centre + u.sd * float(z.z[i]), u.lo, u.hi)
+    return Number(
+        u.owner,
+        u.full_name,
+        u.unit,
+        value,
+        u.sd * float(np.sqrt(told.covariance[i, i])),
+        min(float(said["low95"]), value),
+        max(float(said["high95"]), value),
+        abs(1.0 - float(z.covariance[i, i])),
+        at_an_end(value, u.lo, u.hi, u.centre),
+    )
 
 
 def lasting(names: Sequence[str]) -> list[str]:
