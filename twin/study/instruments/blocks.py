@@ -29,14 +29,14 @@ AFFECT = {
     "log": ("log_delay", "log_scale", "log_bias", "log_angle", "current_north", "current_east"),
     "log aside": ("log_delay", "log_scale", "log_angle", "current_north", "current_east"),
     "wind": ("vane", "wind_scale"),
-    "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "leeway"),
+    "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "drift_ur", "leeway"),
 }
-# without which (or a log of two axes) only how the ship drifts in a turn would tell it (the gyro's scale:
-# from a deviation), and that is no instrument's business
+# without one of which (or a log of two axes) only how the ship drifts in a turn would tell it (the gyro's
+# scale: from a deviation), and that is no instrument's business
 WANTS = {
     "antenna_ahead": ("log aside",),
     "antenna_starboard": ("log aside",),
-    "gnss_delay": ("own",),
+    "gnss_delay": ("own", "log"),
     "gyro_scale": ("own",),
 }
 DIFFERENCE_WIDTHS = 1e-5  # of a prior width, for slopes
@@ -86,7 +86,9 @@ def _block(
     G = np.zeros((y.size, len(UNKNOWNS)))
     for unknown in AFFECT[name]:
         wanted = set(WANTS.get(unknown, ()))
-        if not wanted <= {*p.by, *(["own"] if p.own else [])} and "log aside" not in p.by:
+        if unknown == "drift_ur" and p.tied:  # to the ship's drift alone a late position is this
+            continue
+        if wanted and "log aside" not in p.by and not wanted & {*p.by, *(["own"] if p.own else [])}:
             continue
         step = DIFFERENCE_WIDTHS * float(p.widths[INDEX[unknown]])
         G[:, INDEX[unknown]] = (sense(p, _with(theta, unknown, step), None) - here) / step

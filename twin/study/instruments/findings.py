@@ -77,14 +77,14 @@ def said(
     readings: Sequence[Readings],
     problems: Sequence[Problem],
     found: KinematicFit,
-    clock: str,
+    prompt: Sequence[str],
     velocity_by: str,
 ) -> Instruments:
     """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
-    for each voyage, in the order of the fit; `clock`: the age that is none by definition. A fault of the
-    likeliest set is seen when its log Bayes factor, or that of it and what would stand in its place together,
-    is above FAULT_BAYES_FACTOR."""
-    book = WeighedSets(found, clock)
+    for each voyage, in the order of the fit; `prompt`: the ages that are none by definition, first that from
+    which those of heading and rate count. A fault of the likeliest set is seen when its log Bayes factor, or
+    that of it and what would stand in its place together, is above FAULT_BAYES_FACTOR."""
+    book = WeighedSets(found, prompt)
     best = book.likeliest()
     factor = {f: book.bayes_factor(f, best) for f in book.tellable}
     everything = book.weigh(book.tellable)
@@ -105,11 +105,11 @@ def said(
         faults,
         {f: _falls(problems, found, book, f) for f in faults},
         tuple({k: p.sd[k] for k in (*p.by, "drift") if k in p.sd} for p in problems),
-        _relative(book, aged, problems),
+        _relative(book, aged, problems, prompt[0]),
         factor,
         {f: instead.get(f, ()) for f in faults},
         tuple(_stream(p, t) for p, t in zip(problems, found.theta, strict=True)),
-        clock,
+        prompt[0],
         velocity_by,
         found,
     )
@@ -179,16 +179,17 @@ AGES = {"velocity": "smoothing", "heading": "heading_delay", "rate": "rate_delay
 
 
 def _relative(
-    book: WeighedSets, aged: Weighed, problems: Sequence[Problem]
+    book: WeighedSets, aged: Weighed, problems: Sequence[Problem], clock: str
 ) -> tuple[str, dict[str, tuple[float, float]]]:
     """What the others' ages are counted from (the position where its own can be told, else the prompt
     instrument), and how much later each is [s] with its sd; of the velocity: than the position."""
-    reference = "gnss_delay" if "gnss_delay" in (book.clock, *aged.faults) else book.clock
+    tied = any(p.tied for p in problems)
+    reference = "gnss_delay" if tied and "gnss_delay" in (clock, *aged.faults) else clock
     out = {}
     for name, age in AGES.items():
-        if name not in problems[0].by or age == reference or (age not in aged.faults and age != book.clock):
+        if name not in problems[0].by or age == reference or (age not in aged.faults and age != clock):
             continue
-        if name == "log" and not any(p.tied for p in problems):  # its age counts from the place
+        if name == "log" and not tied:  # its age and the place's count from each other
             continue
         row = np.zeros(len(book.names))
         row[book.names.index(age)] = 1.0

@@ -43,10 +43,10 @@ def estimate(
     lengths = [length_m or r.length for r in readings]
     problems, velocity_by = _problems(readings, lengths, own, progress)
     progress("fitting all numbers at once")
-    found, clock = _whole(problems, clock)
+    found, prompt = _whole(problems, clock)
     chosen: tuple[str, ...] | None = None
     for _ in range(ROUNDS):
-        book = WeighedSets(found, clock)
+        book = WeighedSets(found, prompt)
         best = book.likeliest()
         if best.faults == chosen:
             break
@@ -55,7 +55,7 @@ def estimate(
         found = fit(
             problems, [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)], _start(found, best)
         )
-    return said(readings, problems, found, clock, velocity_by)
+    return said(readings, problems, found, prompt, velocity_by)
 
 
 def _readings(v: Voyage | Track | Readings) -> Readings:
@@ -99,22 +99,25 @@ def _likelier_itself(r: Readings, length: float, progress: Progress) -> float:
     return told[1] - told[0]
 
 
-def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, str]:
-    """All numbers at once but for one age, and which: a clock of all instruments together shows nowhere; none
-    is early, so the earliest is prompt."""
-    names = [u.name for u in UNKNOWNS]
-    first = fit(problems, [n for n in names if n != "heading_delay"], rounds=6)
+def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, tuple[str, ...]]:
+    """All numbers at once but for the ages that are none, and which: a clock of all instruments together
+    shows nowhere; none is early, so the earliest is prompt. Where nothing ties compass and gyro to the place
+    there are two such clocks: theirs, and that of place and log."""
+    names, tied = [u.name for u in UNKNOWNS], any(p.tied for p in problems)
+    held = ("heading_delay",) if tied else ("heading_delay", "log_delay")
+    first = fit(problems, [n for n in names if n not in held], rounds=6)
     there = [n for n, by in CLOCKS.items() if any(b in p.by for b in by for p in problems)]
-    if not any(p.tied for p in problems):  # ages of heading and rate count from the prompter of the two
-        there = [n for n in there if n in OF_ATTITUDE]
-    sd = dict(zip(WeighedSets(first, "heading_delay").names, first.sd().tolist(), strict=False))
-    value = {n: float(first.theta[0, INDEX[n]]) for n in there}
-    earliest = min(there, key=lambda n: value[n] + 2.0 * sd[n])
-    if clock in there and value[clock] - 2.0 * sd[clock] < value[earliest] + 2.0 * sd[earliest]:
-        earliest = clock
-    theta = first.theta.copy()
-    theta[:, [INDEX[n] for n in there]] -= value[earliest]
-    return fit(problems, [n for n in names if n != earliest], theta), earliest
+    groups = [there] if tied else [[n for n in there if (n in OF_ATTITUDE) == a] for a in (True, False)]
+    sd = dict(zip(WeighedSets(first, held).names, first.sd().tolist(), strict=False))
+    theta, prompt = first.theta.copy(), []
+    for ages in filter(None, groups):
+        value = {n: float(first.theta[0, INDEX[n]]) for n in ages}
+        earliest = min(ages, key=lambda n: value[n] + 2.0 * sd[n])
+        if clock in ages and value[clock] - 2.0 * sd[clock] < value[earliest] + 2.0 * sd[earliest]:
+            earliest = clock
+        theta[:, [INDEX[n] for n in ages]] -= value[earliest]
+        prompt.append(earliest)
+    return fit(problems, [n for n in names if n not in prompt], theta), tuple(prompt)
 
 
 def _start(found: KinematicFit, best: Weighed) -> np.ndarray:

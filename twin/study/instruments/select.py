@@ -32,18 +32,20 @@ class Weighed:
 
 
 class WeighedSets:
-    """The sets weighed so far about one fit. `clock`: the age that is none by definition, since a clock of
-    all instruments shows nowhere."""
+    """The sets weighed so far about one fit. `prompt`: the ages that are none by definition, since a clock
+    of all instruments shows nowhere."""
 
-    def __init__(self, found: KinematicFit, clock: str) -> None:
-        self.fit, self.clock = found, clock
+    def __init__(self, found: KinematicFit, prompt: Collection[str]) -> None:
+        self.fit = found
         voyages = found.theta.shape[0]
         order = [UNKNOWNS[i] for i in SHARED] + [UNKNOWNS[i] for i in MINE] * voyages
         self.names = [u.name for u in order]
         self.fault = np.array([u.fault for u in order])
         self.late = np.array([u.late for u in order])
         told = np.diag(found.A) * found.width**2 > LEAST_INFORMATION
-        self.tellable = tuple(f for f in FAULTS if f not in (*ALWAYS, clock) and told[self.fault == f].any())
+        self.tellable = tuple(
+            f for f in FAULTS if f not in (*ALWAYS, *prompt) and told[self.fault == f].any()
+        )
         self.always = np.isin(self.fault, ALWAYS)
         self.places = {f: self.fault == f for f in FAULTS}
         self.weighed: dict[Sets, Weighed] = {}

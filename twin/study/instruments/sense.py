@@ -14,7 +14,7 @@ Frames: north-east; the ship's axes ahead and to starboard. s = t - latency; R t
     wind      turned by the vane: R^T ((1 + k_w) V - W), W = (1 + k_w) air, the wind as this anemometer would
               show it at rest. W is the state: were it the air, a larger k_w would make its steps smaller and
               be preferred for that alone
-    drift     0 = v_r - d_1 r - d_2 dr/dt - d_3 r |r| / r_0 - leeway V_a v_a / U
+    drift     0 = v_r - d_1 r - d_2 dr/dt - d_3 r |r| / r_0 - d_4 u_r r - leeway V_a v_a / U
 """
 
 import numpy as np
@@ -144,14 +144,19 @@ def drift(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     here = at(p, p.grid)
     u, v = _through_water(here, theta)
     r, r_dot = here.v[:, 2], here.a[:, 2]
-    d1, d2, d3 = (get(theta, k) for k in ("drift_r", "drift_rr", "drift_r_r"))
+    d1, d2, d3, d4 = (get(theta, k) for k in ("drift_r", "drift_rr", "drift_r_r", "drift_ur"))
     usual = 0.1 * p.readings.speed / p.length
     if rows:
-        _turned(p, rows, here, u, v, 0.0, 1.0)
-        rows.add(0, p.at[0][:, 2], here.weights(1), -d1 - 2.0 * d3 * np.abs(r) / usual)
+        _turned(p, rows, here, u, v, -d4 * r, 1.0)
+        rows.add(0, p.at[0][:, 2], here.weights(1), -d1 - 2.0 * d3 * np.abs(r) / usual - d4 * u)
         rows.add(0, p.at[0][:, 2], here.weights(2), -d2)
     return np.asarray(
-        v - d1 * r - d2 * r_dot - d3 * r * np.abs(r) / usual - get(theta, "leeway") * blown(p, here)
+        v
+        - d1 * r
+        - d2 * r_dot
+        - d3 * r * np.abs(r) / usual
+        - d4 * u * r
+        - get(theta, "leeway") * blown(p, here)
     )
 
 

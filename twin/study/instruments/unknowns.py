@@ -135,6 +135,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
     InstrumentUnknown("drift_r", "drift", "m", 0.5, "length", "speed aside for a rate of turn"),
     InstrumentUnknown("drift_rr", "drift", "m s", 0.2, "length time", "the same, for one that grows"),
     InstrumentUnknown("drift_r_r", "drift", "m", 0.3, "length", "the same, more of it in a hard turn"),
+    InstrumentUnknown("drift_ur", "drift", "s", 3.0, "one", "the same, more of it at speed"),
 )
 INDEX: Mapping[str, int] = {u.name: i for i, u in enumerate(UNKNOWNS)}
 OWN = ("current_north", "current_east")  # of each voyage; the rest is the ship's
