@@ -35,6 +35,8 @@ from twin.study.reference.steering_gear import with_or_without_gear
 from twin.study.reference.structure import structural_noise
 from twin.study.track.track import Track
 
+Curve = tuple[Unknown, ...]  # numbers of the compass's deviation
+
 
 @dataclass(frozen=True)
 class Calibrated:
@@ -51,8 +53,8 @@ class RoughCore:
     ship: Ship
     tracks: list[Track]  # with the swing in waves, where they showed
     fit: Fit
-    curve: tuple[Unknown, ...]  # of the compass's deviation, fitted beside it
-    asked: tuple[Unknown, ...]  # of that deviation, where the voyages clearly ask for it and it was not
+    curve: Curve  # fitted beside it
+    asked: Curve  # of that deviation, where the voyages clearly ask for it and it was not
 
 
 @dataclass(frozen=True)
@@ -97,19 +99,16 @@ def fitted_core(
     ship: Ship,
     progress: Callable[[str], None] = lambda text: None,
     by: str | None = None,
-    start: NoiseModel | None = None,
+    begun: Core | None = None,
 ) -> FittedCore:
     """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
-    one of FITTED_BY; None: the one that predicts what was held out better. `start`: where the search for the
-    noise model begins; None: as for any ship."""
+    one of FITTED_BY; None: the one that predicts what was held out better. `begun`: what was fitted to a part
+    of them, in whose noise model and with whose antenna this begins; None: as for any ship."""
     first, sailed = ship, [s.track for s in fitted]
     progress("asking how the instruments go together, whatever the ship is")
     own = own_instruments(fitted, ship)
     ship = own.ship
-    core, curve = _beside_its_compass(sailed, ship, progress, start)
-    if core.antenna is not None:
-        progress("fitting again, with the antenna where it was found")
-        core = _with_antenna(core.antenna, sailed, ship, progress, curve, start)
+    core, curve = _with_its_antenna(sailed, ship, progress, begun)
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
     chosen = best_way(
@@ -129,11 +128,42 @@ def fitted_core(
     return FittedCore(ship, core, chosen, rows, own.written)
 
 
+def _with_its_antenna(
+    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], begun: Core | None
+) -> tuple[Core, Curve]:
+    """The core, and the numbers of the compass's deviation that were fitted beside it, if the voyages ask for
+    them. Where the antenna stands elsewhere than in the file it is in the model from the start: what heel and
+    turning carry it about is no sway of its own, and bends the core."""
+    start = begun.noise_model if begun else None
+    if begun and begun.antenna is not None:
+        core, curve = _beside_its_compass(sailed, ship.with_effects(begun.antenna), progress, start)
+        return _moved(core, ship, begun.antenna), curve
+    core, curve = _beside_its_compass(sailed, ship, progress, start)
+    if (antenna := core.antenna) is None:
+        return core, curve
+    progress("fitting again, with the antenna where it was found")
+    moved, start = (_deviating(ship) if curve else ship).with_effects(antenna), core.noise_model
+    del core
+    return _moved(_core(_rough(sailed, moved, progress, curve), progress, start), ship, antenna), curve
+
+
+def _moved(found: Core, ship: Ship, begun: Effect) -> Core:
+    """With the antenna where it was found, but in the model as the ship's file has it until predictions are
+    better with the other (`placed`). `begun`: where the fit had it."""
+    of_antenna = type(begun)
+    numbers = found.numbers[of_antenna.__name__]
+    lasting_ones = (e for e in ship.effects if isinstance(e, of_antenna))
+    return replace(
+        found,
+        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, of_antenna))),
+        antenna=of_antenna(**{k: number["value"] for k, number in numbers.items()}),
+    )
+
+
 def _beside_its_compass(
     sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], start: NoiseModel | None
-) -> tuple[Core, tuple[Unknown, ...]]:
-    """The core, and the numbers of the compass's deviation that were fitted beside it, if the voyages ask for
-    them."""
+) -> tuple[Core, Curve]:
+    """The same with the antenna where this ship has it."""
     rough = _rough(sailed, ship, progress)
     if not (curve := rough.asked):
         return _core(rough, progress, start), ()
@@ -147,34 +177,11 @@ def _deviating(ship: Ship) -> Ship:
     return ship.with_effects(PARTS["compass"].absent(ship))
 
 
-def _with_antenna(
-    first: Effect,
-    sailed: Sequence[Track],
-    ship: Ship,
-    progress: Callable[[str], None],
-    curve: tuple[Unknown, ...],
-    start: NoiseModel | None,
-) -> Core:
-    """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
-    of its own, and had bent the core."""
-    begun = _deviating(ship) if curve else ship
-    found = _core(_rough(sailed, begun.with_effects(first), progress, curve), progress, start)
-    of_antenna = type(first)
-    antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
-    # until predictions are better with the other (`placed`)
-    lasting_ones = (e for e in ship.effects if isinstance(e, of_antenna))
-    return replace(
-        found,
-        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, of_antenna))),
-        antenna=antenna,
-    )
-
-
 def _rough(
     sailed: Sequence[Track],
     ship: Ship,
     progress: Callable[[str], None],
-    curve: tuple[Unknown, ...] = (),
+    curve: Curve = (),
 ) -> RoughCore:
     """`curve`: numbers of the compass's deviation, which the ship then has, that are as open as in any
     ship's."""

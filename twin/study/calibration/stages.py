@@ -8,7 +8,7 @@ from typing import NamedTuple
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
 NOISE_MODEL = "estimating the noise model"
-BEGUN_NEAR = 0.3  # of its time: the second fit's noise model is looked for from where the first one's ended
+BEGUN_NEAR = 0.3  # of its time, where a noise model is looked for from where an earlier one was found
 # first words of what is told, and seconds of one core for four voyages of twenty minutes at 10 Hz
 CORE_STAGES = {
     "fitting the core": 4.5,
@@ -20,6 +20,7 @@ CORE_STAGES = {
 }
 FIT_STAGES = {"asking how the instruments": 3.6, **CORE_STAGES}
 AGAIN = "fitting again, with"  # the core once more, with a part that was found
+MOVED = f"{AGAIN} the antenna"  # with which the second fit begins
 PATH, ONCE_MORE, BASELINE = (
     "fitting along the path",
     "once more, with every voyage",
@@ -60,7 +61,7 @@ class Stages:
 
     def __call__(self, text: str) -> None:
         if text.startswith(AGAIN):
-            self._begun_again()
+            self._begun_again(text.startswith(MOVED))
         later = range(self._at + 1, len(self._plan))
         found = next((i for i in later if text.startswith(self._plan[i].words)), None)
         if found is None:
@@ -71,21 +72,20 @@ class Stages:
 
     def _once_more(self, first: Sequence[Planned]) -> list[Planned]:
         """The stages of the second fit, which are those of the first."""
-        shares = [BEGUN_NEAR if p.words == NOISE_MODEL else 1.0 for p in first]
-        again = [p._replace(every=k * self._every) for p, k in zip(first, shares, strict=True)]
-        return [Planned(ONCE_MORE, 0.0), *again]
+        return [Planned(ONCE_MORE, 0.0), *_near(first, self._every)]
 
-    def _begun_again(self) -> None:
-        """The core once more, in place of what was left of it as it was; in a second fit, too, that is still
-        to come."""
+    def _begun_again(self, moved: bool) -> None:
+        """The core once more, in place of what was left of it as it was; in a second fit that is still to
+        come, too, but for an antenna that was `moved`, with which that begins."""
         done, rest = self._plan[: self._at + 1], self._plan[self._at + 1 :]
         left = list(takewhile(lambda p: p.words in (AGAIN, *CORE_STAGES), rest))
         if any(p.words == AGAIN for p in left):
             return
         every = done[-1].every if done else 1.0
-        done += [Planned(AGAIN, 0.0, every), *(Planned(*stage, every) for stage in CORE_STAGES.items())]
+        again = [Planned(*stage, every) for stage in CORE_STAGES.items()]
+        done += [Planned(AGAIN, 0.0, every), *(_near(again, 1.0) if moved else again)]
         path, *others = rest[len(left) :]
-        if others and others[0].words == ONCE_MORE:
+        if others and others[0].words == ONCE_MORE and not moved:
             others = [*self._once_more(done), others[-1]]
         self._plan = [*done, path, *others]
 
@@ -108,6 +108,12 @@ class Stages:
         if left_s < LEAST_LEFT_S:
             return ""
         return f", about {left_s:.0f} s left" if left_s < 90.0 else f", about {left_s / 60.0:.0f} min left"
+
+
+def _near(stages: Sequence[Planned], every: float) -> list[Planned]:
+    """The same, `every` times as much of each, their noise model looked for from where one was found."""
+    shares = [BEGUN_NEAR if p.words == NOISE_MODEL else 1.0 for p in stages]
+    return [p._replace(every=every * k * p.every) for p, k in zip(stages, shares, strict=True)]
 
 
 def _usual_s(stages: Sequence[Planned]) -> float:
