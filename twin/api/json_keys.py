@@ -137,7 +137,9 @@ DIAGNOSE = (
     JsonKey("next_manoeuvre.why", "", "what it would show, in odds", "one is proposed"),
     JsonKey("not_judged[].effect", "", "an effect that could not be judged", "there are some"),
     JsonKey("not_judged[].lacks[]", "", "the columns or particulars that it lacks", "there are some"),
-    JsonKey("as_on_references[]", "", "weather felt as much on the references", "there is some"),
+    JsonKey(
+        "as_on_references[]", "", "water and weather that the references had as much of", "there is some"
+    ),
     JsonKey("not_visible[]", "", "effects too small to be seen here at a plausible size", "there are some"),
     JsonKey("floor.share_surge_sway_yaw[]", "-", "noise model: slow error, as a share of the forces"),
     JsonKey("floor.sensor_factor", "-", "factor on the readings' scatter"),

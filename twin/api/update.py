@@ -15,7 +15,7 @@ from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
 from twin.study.reference.sailed import Sailed, sailed
 from twin.study.update.added import refused, terminal_lines
-from twin.study.update.addition import Added
+from twin.study.update.addition import HELD_OUT, Added
 from twin.study.update.addition import add as fitted
 from twin.study.update.removal import remove as taken_out
 
@@ -63,7 +63,7 @@ class Update(Result):
     @property
     def refused(self) -> str:
         """Why it is not proved, and what would prove it."""
-        return refused(self.made.proof, self.made.fall)
+        return refused(self.made.proof, self.made.fall, self.data["proof"]["kind"] == HELD_OUT)
 
     def text(self) -> list[str]:
         """The lines of `twin add`."""

@@ -127,14 +127,20 @@ def moment(path: Path, line: int, stamp: str, spec: TimeColumn, shown: str = "")
     try:
         t = datetime.strptime(stamp, spec.format) if spec.format else datetime.fromisoformat(stamp)
     except ValueError:
-        form = spec.format or "ISO 8601, such as 2024-05-17T08:30:00.25Z"
-        raise DataError(
-            f"{path}: line {line}: the time {shown or stamp!r} is not {form}. Correct it, or give its format "
-            "in a "
-            "map: "
-            '[time] format = "%d.%m.%Y %H:%M:%S".'
-        ) from None
+        raise DataError(f"{path}: line {line}: {_no_time(shown or repr(stamp), spec.format)}") from None
     return (t if t.tzinfo else t.replace(tzinfo=UTC)).timestamp()
+
+
+def _no_time(shown: str, form: str | None) -> str:
+    """What is wrong with a stamp that this format does not read, and what to do."""
+    pattern = '[time] format = "%d.%m.%Y %H:%M:%S"'
+    if form and "%" not in form:
+        return (
+            f"the time {shown} cannot be read: {form!r} is no format. Leave it out of the map for ISO "
+            f"8601, or give one such as {pattern}."
+        )
+    wanted = form or "ISO 8601, such as 2024-05-17T08:30:00.25Z"
+    return f"the time {shown} is not {wanted}. Correct it, or give its format in a map: {pattern}."
 
 
 def utc(seconds: float) -> str:

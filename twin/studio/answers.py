@@ -137,7 +137,11 @@ def add(asked: Request, job: Path, tell: Tell) -> str | None:
     whole.write(job / "report.html", page)
     changes = difference(asked["ship"], asked["output"]) if accepted else []
     write_view(job, drawn, {"difference": changes, "history": plain(list(made.ship.notes["history"]))})
-    return None if accepted else f"{refused(made.proof, made.fall)} {asked['output']} was not written."
+    return (
+        None
+        if accepted
+        else f"{refused(made.proof, made.fall, bool(held))} {asked['output']} was not written."
+    )
 
 
 DO: dict[str, Callable[[Request, Path, Tell], str | None]] = {

@@ -4,12 +4,15 @@ told."""
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.diagnosis.effect_diagnosis import askable, too_small
+from twin.study.diagnosis.consider import of_any_day
+from twin.study.diagnosis.effect_diagnosis import too_small
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.verdict import MOST_SAID, Weights, capped, group, rivals, weights
+from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import Hypothesis
 
 
@@ -126,11 +129,27 @@ def test_rivals_are_told_with_how_far_they_are_behind_and_where_they_lead():
     assert second["effects"] == [] and second["log_bayes_factor"] == -7.0 and second["error_m"] is None
 
 
-def test_what_the_answer_lists_is_not_also_too_small_to_be_seen_and_the_next_manoeuvre_asks_about_it():
+def test_what_the_answer_lists_is_not_also_too_small_to_be_seen():
     """Test: a rudder's offset that at a plausible size would not have been seen, and is likely at twice that.
-    Expected: listed, it is not said to be too small; unlikely, it is; likely, a manoeuvre is sought for it."""
+    Expected: listed, it is not said to be too small; unlikely, it is."""
     seen = {"RudderOffset": False, "RudderWear": False, "SpeedLogBias": True}
     assert too_small(seen, ["RudderOffset"]) == ["RudderWear"]
     assert too_small(seen, []) == ["RudderOffset", "RudderWear"]
-    posteriors = {"RudderOffset": 0.85, "RudderWear": 0.01, "SpeedLogBias": 0.01}
-    assert askable(posteriors, seen) == ["RudderOffset", "SpeedLogBias"]
+
+
+@pytest.mark.parametrize("east_mps, ordinary", [(0.3, True), (-0.3, True), (0.5, False), (0.0, True)])
+def test_a_stream_within_twice_what_the_references_scatter_by_is_of_any_day(east_mps, ordinary):
+    """Test: references whose streams scatter by 0.2 m/s to north and east, prior widths 0.25 m/s. Expected: up to
+    0.4 m/s on each axis it is nothing that is missing; without a word of the references any stream is."""
+    effects = [
+        Unknown("Current", name, "m/s", 0.0, 0.25, -2.0, 2.0, every_day=True) for name in ("north", "east")
+    ]
+    found = SimpleNamespace(
+        hypothesis=Hypothesis(("Current",), "usual", 0.0, 0.0),
+        posterior=SimpleNamespace(z=np.array([0.4, east_mps]) / [1.0, 0.25]),
+    )
+    daily = {"Current.north": 0.2, "Current.east": 0.2}
+    known, unknown = (
+        SimpleNamespace(effects=effects, nuisance=SimpleNamespace(daily=d)) for d in (daily, {})
+    )
+    assert of_any_day(known, found) == ("Current",) * ordinary and of_any_day(unknown, found) == ()

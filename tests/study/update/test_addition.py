@@ -110,9 +110,8 @@ def test_a_fault_that_moves_no_track_is_judged_by_the_instrument_it_touches(sail
 def test_a_log_of_one_axis_is_judged_by_the_axis_it_has(sailed, make, kvlcc2):
     """The scale of a log touches the drift through the water too, which most ships do not measure."""
     whole = make(find("SpeedLogScale").absent(kvlcc2).but(scale=-0.08))
-    one = whole.with_rows(
-        whole.time_s, {k: x for k, x in whole.columns.items() if k != "sway_velocity_through_water_mps"}
-    )
+    kept = {k: x for k, x in whole.columns.items() if k != "sway_velocity_through_water_mps"}
+    one = whole.with_rows(whole.time_s, kept)
     made = add(kvlcc2, [find("SpeedLogScale")], [sailed(one)])
     assert made.proof.proved and "sway_velocity_through_water_mps" not in made.fall.measure
 
@@ -120,9 +119,8 @@ def test_a_log_of_one_axis_is_judged_by_the_axis_it_has(sailed, make, kvlcc2):
 def test_a_number_of_which_nothing_that_was_recorded_tells_is_not_told(sailed, make, kvlcc2):
     """Test: an antenna 40 m ahead; no roll was recorded, which alone would show its height. Expected: the file keeps
     the height it has and says no interval of it."""
-    made = add(
-        kvlcc2, [find("AntennaOffset")], [sailed(make(find("AntennaOffset").absent(kvlcc2).but(ahead=40.0)))]
-    )
+    antenna = find("AntennaOffset")
+    made = add(kvlcc2, [antenna], [sailed(make(antenna.absent(kvlcc2).but(ahead=40.0)))])
     told = made.result["parameters"]["AntennaOffset"]
     assert set(told) == {"ahead", "starboard"} and told["ahead"]["low95"] < 40.0 < told["ahead"]["high95"]
     assert "low95" not in to_table(made.ship)["effects"]["AntennaOffset"].get("above", {})

@@ -14,7 +14,7 @@ from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.irregular import comes_and_goes
 from twin.study.diagnosis.moments import Moment, moments
-from twin.study.diagnosis.open_loop_check import roughly
+from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.rarity import deviations
@@ -90,11 +90,22 @@ def consider(
         one_of=tuple(group(weighed, w)),
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
         weather=tuple(sorted(weather, key=lambda c: -c.probability)),
-        as_before=case.as_before,
+        as_before=(*case.as_before, *of_any_day(case, found[explanation or w.best.effects])),
         reached=healthy.reached if healthy else None,
         comes_and_goes=comes_and_goes(case, found[explanation or w.best.effects]),
     )
     return Considered(facts, base, pushes, like, healthy)
+
+
+def of_any_day(case: Case, found: Found) -> tuple[str, ...]:
+    """What a hypothesis has of water and steady force, and the reference voyages had as much of: no number of
+    it is more than ANY_DAY times what they scatter by."""
+    usual, size = case.nuisance.daily, dict[str, float]()
+    for u, z in zip(case.effects, found.posterior.z, strict=True):
+        if u.every_day and u.owner in found.hypothesis.effects:
+            day = usual.get(u.label, 0.0)
+            size[u.owner] = max(size.get(u.owner, 0.0), abs(u.sd * z) / day if day else np.inf)
+    return tuple(name for name, times in size.items() if times <= ANY_DAY)
 
 
 def against_healthy(case: Case) -> Healthy | None:

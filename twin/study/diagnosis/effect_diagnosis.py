@@ -141,7 +141,8 @@ def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
     """What could not be judged or seen, the water and wind of these voyages, and the noise they were judged
     under. `listed`: what the answer gives the numbers of."""
     case, noise_model = told.case, told.case.noise_model
-    told_already = [*told.decision.missing, *listed, *case.as_before, *case.present]
+    as_before = told.considered.facts.as_before
+    told_already = [*told.decision.missing, *listed, *as_before, *case.present]
     return {
         "not_judged": _not_possible(case),
         "weather": [
@@ -149,7 +150,7 @@ def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
             for name, share in told.weights.weather.items()
             if share >= SOME
         ],
-        "as_on_references": list(case.as_before),
+        "as_on_references": list(as_before),
         "not_visible": too_small(told.seen, told_already),
         "floor": {
             "share_surge_sway_yaw": noise_model.share,
@@ -265,7 +266,8 @@ def _next(
         None,
     )
     w, one_of = told.weights, told.considered.facts.one_of
-    asked = one_of if decision.reason == "one_of" else askable(w.effects, told.seen)
+    likely = [name for name, p in w.effects.items() if p >= LEAST_PROBABILITY]
+    asked = one_of if decision.reason == "one_of" else likely
     if rivals is None and decision.verdict == "undecided" and len(asked) > 1:
         first, second, *_ = sorted(asked, key=lambda n: -w.each[n])
         rivals = (first, second)
@@ -275,12 +277,6 @@ def _next(
     chosen = _own_set(told, rivals[0])
     z = np.ones(len(case.effects)) if chosen is None else found[chosen].posterior.z
     return next_manoeuvre(case, case.model, *rivals, z)
-
-
-def askable(effects: Mapping[str, float], seen: Mapping[str, bool]) -> list[str]:
-    """The effects (with their posteriors [1]) that a manoeuvre may tell apart: what would have been seen at a
-    plausible size, and what is likely at its own."""
-    return [name for name, p in effects.items() if seen[name] or p >= LEAST_PROBABILITY]
 
 
 def _not_possible(case: Case) -> list[dict[str, Any]]:

@@ -73,7 +73,7 @@ class Facts:
     weather: tuple[
         Cause, ...
     ]  # water and weather of these voyages that is likely and that the model lacks, or has otherwise
-    as_before: tuple[str, ...]  # weather that was felt as much on the references
+    as_before: tuple[str, ...]  # water and weather that the references had as much of
     # share of the reference voyages, each left out in turn, that a single cause explains as much; None: the
     # ship file lacks their scores [1]
     reached: float | None = None

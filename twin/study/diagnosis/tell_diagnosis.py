@@ -8,7 +8,6 @@ from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import waves_in_words
-from twin.study.reference.weather_baseline import HARDER
 from twin.study.track.jumps import jumps_in_words
 
 PUSHED = 3  # moments that are told
@@ -37,8 +36,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"{n['effect']} cannot be judged without {' and '.join(n['lacks'])}." for n in result["not_judged"]
     ]
     lines += [
-        f"{n} pushed it no more than {as_given(HARDER)} times as hard as on the reference voyages: it is "
-        "allowed for, and not called missing."
+        f"{n} is no more than the reference voyages had: it is allowed for, and not called missing."
         for n in result["as_on_references"]
     ]
     lines += [*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"])]

@@ -110,8 +110,8 @@ def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
 
 
 def shown_since(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
-    """The errors of `when_true` (N, 8) without those of before each stretch's first step, that stand at its
-    last ones: nothing was shown there (NaN)."""
+    """The errors of `when_true` (N, 8), in SI, without those of before each stretch's first step, that stand
+    at its last ones: nothing was shown there (NaN)."""
     out, steps = e.copy(), round(late_s / track.h)
     for a, b in stretches(track) if steps else ():
         out[max(a, b - steps) : b, SATELLITES] = np.nan

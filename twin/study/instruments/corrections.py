@@ -25,12 +25,18 @@ OFFSETS = {
 
 def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
     """The ship with the faults that were seen as effects of its own; and the seen numbers that no effect of
-    the catalogue holds."""
+    the catalogue holds, or that lie outside the box of theirs."""
     seen = _seen(found)
-    known = effects_of_readings()
-    told = {e.unknown.name: (e.value, e.sd) for e in seen if e.unknown.name in known}
+    known, names = effects_of_readings(), [r.name for r in found.readings]
     left = [e for e in seen if e.unknown.name not in known]
-    return with_numbers(ship, told, all(found.own), [r.name for r in found.readings]), left
+    for effect in dict.fromkeys(known[e.unknown.name] for e in seen if e not in left):
+        its = [e for e in seen if known.get(e.unknown.name) is effect]
+        told = {e.unknown.name: (e.value, e.sd) for e in its}
+        try:
+            ship = with_numbers(ship, told, all(found.own), names)
+        except SettingsError:  # outside what this effect can be
+            left += its
+    return ship, left
 
 
 def with_numbers(

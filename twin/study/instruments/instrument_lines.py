@@ -94,9 +94,8 @@ def terminal_lines(found: Instruments) -> list[str]:
         for e in found.estimates
         if e.unknown.fault == "current"
     ]
-    unseen = [
-        e for e in found.estimates if e.unknown.fault not in found.faults and e.unknown.fault not in ALWAYS
-    ]
+    others = {*ALWAYS, *found.faults, *(f for named in found.instead.values() for f in named)}
+    unseen = [e for e in found.estimates if e.unknown.fault not in others]
     out += ["", "not seen (95 %: less than)"] + [
         f"  {e.unknown.meaning}: {_limit(e)}" for e in unseen if e.known
     ]

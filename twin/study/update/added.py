@@ -34,12 +34,12 @@ def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
     how = f"{_ratio(proof)}; {_metres(result, shown)}"
     if proof.proved:
         farther = f" {FARTHER}" if shown.after > shown.before else ""
-        return f"With {names} measurements not used to fit it are likelier: {how}.{farther}"
-    return f"With {names} measurements not used to fit it are not clearly likelier: {how}."
+        return f"Measurements that were kept from the fit are likelier with {names}: {how}.{farther}"
+    return f"Measurements that were kept from the fit are not clearly likelier with {names}: {how}."
 
 
-def refused(proof: HeldOutProof, shown: Fall) -> str:
-    """The reason, and what would tell."""
+def refused(proof: HeldOutProof, shown: Fall, apart: bool) -> str:
+    """The reason, and what would tell. `apart`: whether whole voyages were kept from the fit."""
     if proof.idle:
         return "nothing changes: the effect was fitted to zero;"
     reason = f"not proved: {_ratio(proof)}; {shown.sentence()}."
@@ -47,9 +47,9 @@ def refused(proof: HeldOutProof, shown: Fall) -> str:
         return f"{reason} More of such voyages would not prove it."
     if proof.more_s > FOREVER_S:
         return f"{reason} Too little of it shows to be proved in a hundred hours."
-    return (
-        f"{reason} At this rate about {sailing_time(proof.more_s)} more of held-out sailing would prove it."
-    )
+    parts = "; so may every third of all these voyages in turn, --cross-validated" * apart
+    more = f"about {sailing_time(proof.more_s)} more of held-out sailing would prove it"
+    return f"{reason} At this rate {more}{parts}."
 
 
 def _ratio(proof: HeldOutProof) -> str:

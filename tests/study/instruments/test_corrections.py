@@ -1,0 +1,36 @@
+"""What was found of the instruments, as a ship file can hold it."""
+
+from types import SimpleNamespace
+
+from twin.physics.ship import load
+from twin.study.instruments.corrections import corrected
+from twin.study.instruments.unknowns import INDEX, UNKNOWNS
+
+
+def found_of(**numbers):
+    """Faults that were seen with these numbers, whose standard deviation is a tenth."""
+    unknowns = {name: UNKNOWNS[INDEX[name]] for name in numbers}
+    return SimpleNamespace(
+        estimates=[
+            SimpleNamespace(unknown=unknowns[name], value=value, sd=0.1 * abs(value), seen=True)
+            for name, value in numbers.items()
+        ],
+        faults=tuple(u.fault for u in unknowns.values()),
+        own=(False,),
+        readings=(SimpleNamespace(name="zigzag"),),
+    )
+
+
+def test_a_number_that_no_ship_can_have_is_left_out_and_the_others_are_written():
+    """Test: a log 8 % too high, and an antenna 400 m under the keel, as a roll column with the other sign makes it.
+    Expected: the log's scale is written with its source, and what was left out is told."""
+    ship, left = corrected(load("kvlcc2"), found_of(antenna_above=-400.0, log_scale=0.08))
+    (effect,) = (e for e in ship.effects if type(e).__name__ == "SpeedLogScale")
+    assert effect.scale == 0.08 and ship.notes["effects"]["SpeedLogScale"]["scale"]["sd"] == 0.008
+    assert [e.unknown.name for e in left] == ["antenna_above"]
+    assert not any(type(e).__name__ == "AntennaOffset" for e in ship.effects)
+
+
+def test_an_age_that_no_effect_holds_is_told_as_left_out():
+    ship, left = corrected(load("kvlcc2"), found_of(log_delay=1.5))
+    assert ship.effects == load("kvlcc2").effects and [e.unknown.name for e in left] == ["log_delay"]
