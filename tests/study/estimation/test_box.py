@@ -20,3 +20,9 @@ from twin.study.estimation.box import at_an_end
 )
 def test_a_number_at_an_end_of_its_box_was_stopped_there_unless_that_is_none_of_it(value, none, stopped):
     assert at_an_end(value, 0.0, 1.0, none) is stopped
+
+
+@pytest.mark.parametrize("sd, stopped", [(0.2, True), (0.3, False)])
+def test_an_end_that_the_prior_itself_reaches_is_an_answer_as_any(sd, stopped):
+    """Test: a share from none to all, believed to be a half, give or take 0.2 or 0.3, that is none."""
+    assert at_an_end(0.0, 0.0, 1.0, 0.5, sd) is stopped

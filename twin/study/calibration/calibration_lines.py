@@ -5,9 +5,22 @@ from typing import Any
 from twin.num import as_given, num, readable
 from twin.recording.checks import losses, whose
 from twin.study.calibration.calibration_record import PARTS
+from twin.study.estimation.columns import FORM, LATE, SEA
 from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
 from twin.study.track.jumps import jumps_in_words
+
+OF_WHAT = {  # owner of a number that is no effect of the catalogue -> what it stands for
+    SEA: "what one wave does to helm and hull at once",
+    FORM: "a term of the hull that this model does not have",
+    LATE: "how late this instrument usually is",
+}
+
+
+def _of_what(name: str) -> str:
+    """What a number of the baseline stands for, with a comma; "" of an effect."""
+    words = OF_WHAT.get(name.partition(".")[0])
+    return f"{words}, " if words else ""
 
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
@@ -17,7 +30,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"baseline of this ship: {sizes_in_words({i['name']: i})} (allowed for by twin diagnose)"
+        f"baseline of this ship: {sizes_in_words({i['name']: i})} ({_of_what(i['name'])}allowed for by twin diagnose)"
         for i in result["usual"]
     ]
     lines += _derivatives(result)

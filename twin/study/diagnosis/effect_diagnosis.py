@@ -266,8 +266,7 @@ def _next(
         None,
     )
     w, one_of = told.weights, told.considered.facts.one_of
-    likely = [name for name, p in w.effects.items() if p >= LEAST_PROBABILITY]
-    asked = one_of if decision.reason == "one_of" else likely
+    asked = one_of if decision.reason == "one_of" else [c["effect"] for c in listed]
     if rivals is None and decision.verdict == "undecided" and len(asked) > 1:
         first, second, *_ = sorted(asked, key=lambda n: -w.each[n])
         rivals = (first, second)

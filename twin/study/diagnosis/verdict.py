@@ -174,7 +174,7 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
                     "high95": float(np.clip(high, u.lo, u.hi)),
                     "unit": u.unit,
                     "meaning": params[u.name].doc,
-                    "at_box_end": at_an_end(value, u.lo, u.hi, u.centre),
+                    "at_box_end": at_an_end(value, u.lo, u.hi, u.centre, u.sd),
                 }
                 | ({"in_ship_file": u.centre} if name in case.present else {})
             )

@@ -8,10 +8,10 @@ INSIDE = 1e-9  # by which a half-space may seem left, in widths of priors
 EDGE = 1e-6  # of a box: what is nearer than this to its end was stopped by it
 
 
-def at_an_end(value: float, lo: float, hi: float, none: float = 0.0) -> bool:
+def at_an_end(value: float, lo: float, hi: float, none: float = 0.0, sd: float = 0.0) -> bool:
     """Whether a box stopped a number, or does not hold it; at an end where it is `none` it is only not
-    there."""
-    stops = (end for end in (lo, hi) if end != none)
+    there, and one within two prior widths `sd` of that is as much of an answer as what lies before it."""
+    stops = (end for end in (lo, hi) if abs(end - none) > 2.0 * sd)
     return not lo <= value <= hi or any(abs(value - end) <= EDGE * (hi - lo) for end in stops)
 
 

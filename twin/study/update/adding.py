@@ -237,7 +237,7 @@ def _number(u: Unknown, said: Mapping[str, Any], z: Posterior, told: Posterior, 
         min(float(said["low95"]), value),
         max(float(said["high95"]), value),
         abs(1.0 - float(z.covariance[i, i])),
-        at_an_end(value, u.lo, u.hi, u.centre),
+        at_an_end(value, u.lo, u.hi, u.centre, u.sd),
     )
 
 
