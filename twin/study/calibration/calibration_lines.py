@@ -30,7 +30,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"baseline of this ship: {sizes_in_words({i['name']: i})} ({_of_what(i['name'])}allowed for by twin diagnose)"
+        f"baseline of this ship: {sizes_in_words({i['name']: i})} ({_of_what(i['name'])}allowed for)"
         for i in result["usual"]
     ]
     lines += _derivatives(result)
