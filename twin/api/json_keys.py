@@ -64,12 +64,7 @@ CANDIDATE = (
     JsonKey("probability", "1", "how often such a cause was there on random ships", "one is likely"),
     JsonKey("posterior", "1", "that it is there, if the noise model is true", FACTS),
     JsonKey("on_references", "1", "share of the references with as much of it by kinematics, or null", FACTS),
-    JsonKey(
-        "parameters[].name",
-        "",
-        "one of its numbers; `NAME of VOYAGE` where each voyage has its own",
-        "one is likely",
-    ),
+    JsonKey("parameters[].name", "", "one of its numbers; `NAME of VOYAGE`: that voyage's", "one is likely"),
     *when("one is likely", under("parameters[]", ESTIMATE)),
     JsonKey("parameters[].meaning", "", "what the number is, and of what a share is one", "one is likely"),
     JsonKey("parameters[].in_ship_file", "of the number", "what the ship file has", "it has the effect"),

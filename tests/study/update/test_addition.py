@@ -111,8 +111,7 @@ def test_a_log_of_one_axis_is_judged_by_the_axis_it_has(sailed, make, kvlcc2):
     """The scale of a log touches the drift through the water too, which most ships do not measure."""
     whole = make(find("SpeedLogScale").absent(kvlcc2).but(scale=-0.08))
     kept = {k: x for k, x in whole.columns.items() if k != "sway_velocity_through_water_mps"}
-    one = whole.with_rows(whole.time_s, kept)
-    made = add(kvlcc2, [find("SpeedLogScale")], [sailed(one)])
+    made = add(kvlcc2, [find("SpeedLogScale")], [sailed(whole.with_rows(whole.time_s, kept))])
     assert made.proof.proved and "sway_velocity_through_water_mps" not in made.fall.measure
 
 
