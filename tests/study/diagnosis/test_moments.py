@@ -41,7 +41,7 @@ def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(case_of):
 
 def test_what_a_late_receiver_showed_of_before_the_recording_is_no_push_at_its_end(make, kvlcc2):
     """Test: a receiver 20 s late, as its model knows, on a voyage that begins in a turn. Expected: its last stretches
-    are no likelier with a push (before, the errors of its first 20 s stood there: 3.4 nats)."""
+    are no likelier with a push (before, the errors of its first 20 s stood there: a log Bayes factor of 3.4)."""
     steps, start, whole = 16, 420, make(seed=1)
     late_s, now = steps * (whole.time_s[1] - whole.time_s[0]), slice(start, whole.time_s.size)
     then = slice(start - steps, whole.time_s.size - steps)
