@@ -1,6 +1,7 @@
 """What compare found, as lines on a terminal: the verdict first, every error beside its noise."""
 
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 from twin.num import as_given, num
@@ -38,20 +39,26 @@ def _units(error: float, floor: float) -> str:
     bar = 0
     while bar < BAR and 2.0 ** (bar * 5.0 / BAR) < times:
         bar += 1
-    return f"x{num(times, 3):<6}{'#' * bar}"
+    return f"x{num(times, 3):<6}{'#' * bar}".rstrip()
 
 
 def _horizons(rows: list[dict[str, Any]]) -> list[str]:
     of = rows[0]["noise_floor"]["of"]
-    out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over expected ({of})"]
+    heads = ("position [m]", "across [m]", "heading [deg]", f"position over expected ({of})")
+    out = ["", f"open loop   {_in_columns(heads)}"]
     for r in rows:
         n = r["noise_floor"]
         cells = [
             f"{num(r[k], 3)} / {num(n[k], 2)}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")
         ]
         units = _units(r["position_mae_m"], n["position_mae_m"])
-        out.append(f"{as_given(r['horizon_s']):>6} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
+        out.append(f"{as_given(r['horizon_s']):>6} s    {_in_columns([*cells, units])}")
     return out
+
+
+def _in_columns(cells: Sequence[str]) -> str:
+    """The last as it is; the others as wide as two numbers of this table become."""
+    return "".join(f"{cell:<19}" for cell in cells[:-1]) + cells[-1]
 
 
 def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
