@@ -1,18 +1,19 @@
 """How far a calibration is: its stages in order, and how long they still take, by what this run took."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from itertools import takewhile
 from time import monotonic
 from typing import NamedTuple
 
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
-NOISE_MODEL = "estimating the noise model"
-BEGUN_NEAR = 0.3  # of its time, where a noise model is looked for from where an earlier one was found
+CORE, SEA, NOISE_MODEL = "fitting the core", "testing again whether waves", "estimating the noise model"
+# shares of its time, where an earlier fit found from where to begin: its gear and its sea are not asked again
+BEGUN_NEAR = {CORE: 0.4, SEA: 0.0, NOISE_MODEL: 0.3}
 # first words of what is told, and seconds of one core for four voyages of twenty minutes at 10 Hz
 CORE_STAGES = {
-    "fitting the core": 4.5,
-    "testing again whether waves": 2.0,
+    CORE: 4.5,
+    SEA: 2.0,
     "testing whether wind": 0.1,
     "testing whether the compass": 0.4,
     NOISE_MODEL: 10.5,
@@ -20,7 +21,6 @@ CORE_STAGES = {
 }
 FIT_STAGES = {"asking how the instruments": 3.6, **CORE_STAGES}
 AGAIN = "fitting again, with"  # the core once more, with a part that was found
-MOVED = f"{AGAIN} the antenna"  # with which the second fit begins
 PATH, ONCE_MORE, BASELINE = (
     "fitting along the path",
     "once more, with every voyage",
@@ -52,7 +52,7 @@ class Stages:
     ) -> None:
         self._tell, self._clock, self._began, self._every = tell, clock, clock(), every or 1.0
         first = [Planned(*stage) for stage in FIT_STAGES.items()]
-        second = [] if every is None else self._once_more(first)
+        second = [] if every is None else [Planned(ONCE_MORE, 0.0), *_near(first, self._every)]
         self._plan = [*first, Planned(PATH, 1.0), *second, Planned(BASELINE, 8.5, self._every)]
         self._at = -1
         self._took: dict[
@@ -61,7 +61,7 @@ class Stages:
 
     def __call__(self, text: str) -> None:
         if text.startswith(AGAIN):
-            self._begun_again(text.startswith(MOVED))
+            self._begun_again()
         later = range(self._at + 1, len(self._plan))
         found = next((i for i in later if text.startswith(self._plan[i].words)), None)
         if found is None:
@@ -70,24 +70,17 @@ class Stages:
         self._at = found
         self._tell(f"{text} ({found + 1} of {len(self._plan)}{self._left()})")
 
-    def _once_more(self, first: Sequence[Planned]) -> list[Planned]:
-        """The stages of the second fit, which are those of the first."""
-        return [Planned(ONCE_MORE, 0.0), *_near(first, self._every)]
-
-    def _begun_again(self, moved: bool) -> None:
-        """The core once more, in place of what was left of it as it was; in a second fit that is still to
-        come, too, but for an antenna that was `moved`, with which that begins."""
+    def _begun_again(self) -> None:
+        """The core once more, in place of what was left of it as it was. A second fit begins with the part
+        that was found."""
         done, rest = self._plan[: self._at + 1], self._plan[self._at + 1 :]
         left = list(takewhile(lambda p: p.words in (AGAIN, *CORE_STAGES), rest))
         if any(p.words == AGAIN for p in left):
             return
         every = done[-1].every if done else 1.0
-        again = [Planned(*stage, every) for stage in CORE_STAGES.items()]
-        done += [Planned(AGAIN, 0.0, every), *(_near(again, 1.0) if moved else again)]
-        path, *others = rest[len(left) :]
-        if others and others[0].words == ONCE_MORE and not moved:
-            others = [*self._once_more(done), others[-1]]
-        self._plan = [*done, path, *others]
+        core = [Planned(*stage) for stage in CORE_STAGES.items()]
+        found = {p.words for p in done}
+        self._plan = [*done, Planned(AGAIN, 0.0, every), *_near(core, every, found), *rest[len(left) :]]
 
     def _end_stage(self) -> None:
         """The stage that is told now ends the one before."""
@@ -110,10 +103,10 @@ class Stages:
         return f", about {left_s:.0f} s left" if left_s < 90.0 else f", about {left_s / 60.0:.0f} min left"
 
 
-def _near(stages: Sequence[Planned], every: float) -> list[Planned]:
-    """The same, `every` times as much of each, their noise model looked for from where one was found."""
-    shares = [BEGUN_NEAR if p.words == NOISE_MODEL else 1.0 for p in stages]
-    return [p._replace(every=every * k * p.every) for p, k in zip(stages, shares, strict=True)]
+def _near(stages: Sequence[Planned], every: float, found: Container[str] = BEGUN_NEAR) -> list[Planned]:
+    """The same, `every` times as much of each, begun from where those that are `found` ended."""
+    shares = [BEGUN_NEAR.get(p.words, 1.0) if p.words in found else 1.0 for p in stages]
+    return [p._replace(every=every * k * p.every) for p, k in zip(stages, shares, strict=True) if k]
 
 
 def _usual_s(stages: Sequence[Planned]) -> float:

@@ -78,8 +78,7 @@ def with_or_without_gear(
     slower that is."""
 
     def fitted(first: Model) -> Fit:
-        every = (*unknowns, *gear_unknowns(first))
-        return fit(tracks, first, every, known, NoiseModel(), temper=temper, smooth=True)
+        return beside_its_gear(tracks, first, unknowns, known, temper)
 
     found = fitted(model)
     if not model.ship.actuators and model.lags:
@@ -101,6 +100,14 @@ def with_or_without_gear(
                 found = better
             break
     return found
+
+
+def beside_its_gear(
+    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], known: Catalogue, temper: float
+) -> Fit:
+    """The core's fit (and these other unknowns') with the gears that the model has."""
+    every = (*unknowns, *gear_unknowns(model))
+    return fit(tracks, model, every, known, NoiseModel(), temper=temper, smooth=True)
 
 
 def geared(
