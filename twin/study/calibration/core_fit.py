@@ -24,7 +24,7 @@ from twin.study.calibration.own_instruments import own_instruments
 from twin.study.calibration.parts import placed, significant, with_or_without_wind
 from twin.study.calibration.usual import usual
 from twin.study.calibration.ways import FittedShip, best_way
-from twin.study.estimation.columns import Unknown, core_unknowns, with_values
+from twin.study.estimation.columns import Unknown, core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.reference.derivatives import first_prior, informed_by, noted, with_derivatives
@@ -58,19 +58,13 @@ class RoughCore:
 
 
 class Begun(NamedTuple):
-    """What an earlier fit found, with which a later one begins: in its sea and with its gear, its antenna and
-    its compass; the numbers are as open as ever."""
+    """What an earlier fit found, with which a later one begins: its gear, its antenna and its compass; all
+    numbers are as open as ever."""
 
-    tracks: list[Track]  # of the later fit
     model: Model
     noise_model: NoiseModel | None = None
     antenna: Effect | None = None
     curve: Curve = ()
-
-    def beside(self, ship: Ship, unknowns: Sequence[Unknown]) -> Model:
-        """The model of this ship with that gear, and with these numbers of the core as they were found."""
-        found = [float(self.model.ship.derivative(u.name)) for u in unknowns]
-        return with_values(Model.of(ship).but(*self.model.lags), unknowns, found, of_ship(ship))
 
 
 @dataclass(frozen=True)
@@ -81,14 +75,12 @@ class FittedCore:
     core: Core
     curve: Curve  # numbers of the compass's deviation that were fitted beside it
     chosen: FittedShip
-    kept: HeldOut  # what was held out, with the swing in waves, where it showed
     held_out: list[dict[str, Any]]  # by horizon, the error before the fit beside that after it
     instruments: dict[str, Any]  # numbers of instruments that became a part of the ship
 
-    def once_more(self) -> "Begun":
-        """With what a fit of all these voyages begins: those that were fitted, then those held out."""
-        tracks = [*self.core.tracks, *(levelled(t) for t, _ in self.kept)]
-        return Begun(tracks, self.core.model, self.core.noise_model, self.core.antenna, self.curve)
+    def once_more(self) -> Begun:
+        """With what a fit of these voyages and more begins."""
+        return Begun(self.core.model, self.core.noise_model, self.core.antenna, self.curve)
 
     def calibrated(
         self,
@@ -125,30 +117,30 @@ def fitted_core(
     begun: FittedCore | None = None,
 ) -> FittedCore:
     """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
-    one of FITTED_BY; None: the one that predicts what was held out better. `begun`: what was fitted to the
-    first of them when the others were held out, with which this begins; None: as for any ship."""
+    one of FITTED_BY; None: the one that predicts what was held out better. `begun`: what was fitted to a part
+    of them, with which this begins; None: as for any ship."""
     first, sailed = ship, [s.track for s in fitted]
     progress("asking how the instruments go together, whatever the ship is")
     own = own_instruments(fitted, ship)
     ship = own.ship
     core, curve = _with_its_antenna(sailed, ship, progress, begun.once_more() if begun else None)
-    kept = begun.kept if begun else [(swung(t, core.model), first) for t, first in held_out]
-    steps = remembering(placed(_beside(ship, core), core.antenna, kept), core, fitted)
+    held_out = [(swung(t, core.model, gear=False), first) for t, first in held_out]
+    steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
     chosen = best_way(
         steps,
         core.tracks,
         [d.unknown for d in core.derivatives if d.excited],
-        kept,
+        held_out,
         by=by,
         found_curve=bool(curve),
         progress=progress,
     )
-    before = errors(Model.of(first), kept).by_horizon
+    before = errors(Model.of(first), held_out).by_horizon
     rows = [
         e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
         for b, e in zip(before, chosen.off.by_horizon, strict=True)
     ]
-    return FittedCore(ship, core, curve, chosen, kept, rows, own.written)
+    return FittedCore(ship, core, curve, chosen, rows, own.written)
 
 
 def _with_its_antenna(
@@ -163,7 +155,7 @@ def _with_its_antenna(
         if (antenna := core.antenna) is None:
             return core, curve
         progress("fitting again, with the antenna where it was found")
-        begun = Begun(core.tracks, core.model, core.noise_model, antenna, curve)
+        begun = Begun(core.model, core.noise_model, antenna, curve)
         del core  # its columns are large
     core, curve = _beside_its_compass(sailed, ship.with_effects(antenna), progress, begun)
     return _moved(core, ship, antenna), curve
@@ -191,7 +183,7 @@ def _beside_its_compass(
         rough = _rough(sailed, ship, progress, begun)
         if not (curve := rough.asked):
             return _core(rough, progress, start), ()
-        begun = Begun(rough.tracks, rough.fit.model, start)
+        begun = Begun(rough.fit.model, start)
         del rough  # its columns are large
         progress("fitting again, with a compass that deviates with the heading")
     return _core(_rough(sailed, _deviating(ship), progress, begun, curve), progress, start), curve
@@ -211,43 +203,37 @@ def _rough(
 ) -> RoughCore:
     """`curve`: numbers of the compass's deviation, which the ship then has, that are as open as in any
     ship's."""
-    known, core = of_ship(ship), core_unknowns(Model.of(ship))
-    own = [u for u in instruments(Model.of(ship), known) if not curve or u.owner != PARTS["compass"].__name__]
-    unknowns = tuple(first_prior(u, ship) for u in (*core, *own, *curve))
+    model, known = Model.of(ship), of_ship(ship)
+    own = [u for u in instruments(model, known) if not curve or u.owner != PARTS["compass"].__name__]
+    unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *own, *curve))
     if begun:
-        progress("fitting the core from where it was")
-        tracks = begun.tracks
-        rough = beside_its_gear(tracks, begun.beside(ship, core), unknowns, known, TEMPER)
+        tracks = _in_its_sea(sailed, begun.model, progress)
+        progress("fitting the core with the gear that was found")
+        rough = beside_its_gear(tracks, model.but(*begun.model.lags), unknowns, known, TEMPER)
     else:
-        tracks, rough = _in_its_sea(sailed, ship, unknowns, progress)
+        progress(
+            "fitting the core, and testing whether "
+            + (
+                "actuators lag behind what was recorded of them"
+                if ship.actuators
+                else "the recorded rudder angle is the order"
+            )
+        )
+        tracks = [levelled(t) for t in sailed]
+        rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+        again = _in_its_sea(sailed, rough.model, progress)
+        if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
+            tracks, rough = again, with_or_without_gear(again, model, unknowns, known, TEMPER)
     progress("testing whether wind pushed the ship")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     progress("testing whether the compass deviates with the heading")
     return RoughCore(ship, tracks, rough, curve, own_deviation(tracks, rough, known, TEMPER))
 
 
-def _in_its_sea(
-    sailed: Sequence[Track], ship: Ship, unknowns: Sequence[Unknown], progress: Callable[[str], None]
-) -> tuple[list[Track], Fit]:
-    """The core with the gear that the voyages ask for, and these with the swing in waves, where it shows
-    beside that core."""
-    model, known = Model.of(ship), of_ship(ship)
-    progress(
-        "fitting the core, and testing whether "
-        + (
-            "actuators lag behind what was recorded of them"
-            if ship.actuators
-            else "the recorded rudder angle is the order"
-        )
-    )
-    tracks = [levelled(t) for t in sailed]
-    rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+def _in_its_sea(sailed: Sequence[Track], model: Model, progress: Callable[[str], None]) -> list[Track]:
+    """The tracks with the swing in waves, where it shows beside this model, whose gear was looked for."""
     progress("testing again whether waves move the ship")
-    again = [swung(t, rough.model) for t in sailed]
-    if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
-        tracks = [levelled(t) for t in again]
-        rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    return tracks, rough
+    return [levelled(swung(t, model, gear=False)) for t in sailed]
 
 
 def _core(rough: RoughCore, progress: Callable[[str], None], start: NoiseModel | None) -> Core:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
 CORE, SEA, NOISE_MODEL = "fitting the core", "testing again whether waves", "estimating the noise model"
-# shares of its time, where an earlier fit found from where to begin: its gear and its sea are not asked again
-BEGUN_NEAR = {CORE: 0.4, SEA: 0.0, NOISE_MODEL: 0.3}
+# shares of its time, where an earlier fit found from where to begin: its gear is not asked again
+BEGUN_NEAR = {CORE: 0.4, NOISE_MODEL: 0.3}
 # first words of what is told, and seconds of one core for four voyages of twenty minutes at 10 Hz
 CORE_STAGES = {
     CORE: 4.5,
@@ -19,7 +19,8 @@ CORE_STAGES = {
     NOISE_MODEL: 10.5,
     "fitting again with this noise model": 2.8,
 }
-FIT_STAGES = {"asking how the instruments": 3.6, **CORE_STAGES}
+INSTRUMENTS = "asking how the instruments"
+FIT_STAGES = {INSTRUMENTS: 3.6, **CORE_STAGES}
 AGAIN = "fitting again, with"  # the core once more, with a part that was found
 PATH, ONCE_MORE, BASELINE = (
     "fitting along the path",
@@ -104,9 +105,11 @@ class Stages:
 
 
 def _near(stages: Sequence[Planned], every: float, found: Container[str] = BEGUN_NEAR) -> list[Planned]:
-    """The same, `every` times as much of each, begun from where those that are `found` ended."""
-    shares = [BEGUN_NEAR.get(p.words, 1.0) if p.words in found else 1.0 for p in stages]
-    return [p._replace(every=every * k * p.every) for p, k in zip(stages, shares, strict=True) if k]
+    """The same, `every` times as much of each, begun from where those that are `found` ended: in the sea as
+    it is beside that core."""
+    in_order = sorted(stages, key=lambda p: (INSTRUMENTS, SEA, p.words).index(p.words))
+    shares = [BEGUN_NEAR.get(p.words, 1.0) if p.words in found else 1.0 for p in in_order]
+    return [p._replace(every=every * k * p.every) for p, k in zip(in_order, shares, strict=True)]
 
 
 def _usual_s(stages: Sequence[Planned]) -> float:

@@ -46,10 +46,11 @@ WAVES_LOG_BAYES = 20.0  # log evidence, tempered, that waves must add where no s
 BEYOND = 3.0
 
 
-def swung(track: Track, model: Model) -> Track:
+def swung(track: Track, model: Model, gear: bool = True) -> Track:
     """The track with what waves do to it, if that is likelier than any noise or a slow gear would be,
     whatever else may be wrong with it; else without. A sea that was measured need not be proved, but must be
-    the likelier."""
+    the likelier. `gear`: whether there may be another gear than the model has; not where it was looked for on
+    this ship's voyages."""
     track = track if track.swell is None else replace(track, swell=None)
     usable, known = model.without_inputs(track.missing())[0], of_ship(model.ship)
     unknowns = nuisance_unknowns(usable, known)
@@ -60,7 +61,7 @@ def swung(track: Track, model: Model) -> Track:
             return track
         part = read_parts([track], float(model.ship.scale("time")), MOST_SEGMENTS)
         # a gear that lags leaves swift accelerations, too, and is nothing to first order
-        slow = geared(usable, part, unknowns, known, TEMPER)
+        slow = geared(usable, part, unknowns, known, TEMPER) if gear else usable
         if slow is not usable:
             other, more, less = likeliest_waves(track, slow, unknowns)
             rough, sea, calm = rough if sea > more else other, max(sea, more), max(calm, less)
