@@ -68,7 +68,7 @@ def raw(table: Table, c: Column) -> np.ndarray:
         yaw = np.degrees(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
         values = np.mod(90.0 - yaw if c.unit == "quaternion_enu" else yaw, 360.0)
     elif len(c.parts) > 1:
-        values = sum_of([table.numbers[key] for key in c.parts], c.factors)
+        values = sum_of(in_one_row([table.numbers[key] for key in c.parts]), c.factors)
     else:
         values = table.numbers[c.parts[0]]
     values = from_ddmm(values) if c.unit == "ddmm" else values
@@ -85,6 +85,25 @@ def sum_of(columns: list[np.ndarray], factors: tuple[float, ...]) -> np.ndarray:
     for values, by in zip(columns, factors or (1.0,) * len(columns), strict=True):
         out = out + values * by
     return out
+
+
+def in_one_row(columns: list[np.ndarray]) -> list[np.ndarray]:
+    """Columns that stand in no row together, as of two shafts that a log tells of one after the other: in
+    each row that has one of them the others as they were told last, unless that is more than twice their
+    usual number of rows ago. Any other columns as they are. All (N,), in whatever unit the file has."""
+    told = np.isfinite(columns)
+    if told.all(axis=0).any() or not told.any(axis=1).all():
+        return columns
+    return [np.where(told.any(axis=0), _held(x), np.nan) for x in columns]
+
+
+def _held(values: np.ndarray) -> np.ndarray:
+    """(N,) what was told last."""
+    at = np.flatnonzero(np.isfinite(values))
+    last = np.searchsorted(at, np.arange(values.size), "right") - 1
+    usual = np.median(np.diff(at)) if at.size > 1 else 0.0
+    ago = np.arange(values.size) - at[last]
+    return np.where((last >= 0) & (ago <= 2.0 * usual), values[at[last]], np.nan)
 
 
 def degrees_of_text(table: Table, key: Key) -> np.ndarray:

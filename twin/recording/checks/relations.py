@@ -116,6 +116,8 @@ def thrust(view: VoyageView) -> float | None:
     first, last = view.windows(max(20.0, 5.0 * view.step_s))
     steady = np.abs(u[last] - u[first]) < STEADY * view.speed
     turns, way = view.summed(n, first, last), view.summed(u, first, last)
+    if not np.isfinite(turns).any():
+        return None
     on = (
         steady
         & (np.abs(turns) > TURNS_ON * np.nanquantile(np.abs(turns), 0.9))

@@ -77,7 +77,8 @@ def _parts(result: dict[str, Any]) -> list[str]:
     for part, why in (
         (
             "antenna",
-            "position is measured elsewhere than the ship file says: the place is now part of the model",
+            "position is measured elsewhere than the ship file says, or the log's speed, whose place is "
+            "allowed for at import (docs/import.md): that is now part of the model",
         ),
         ("wind", "wind pushed the ship on these voyages: its force is now part of the model"),
         (

@@ -118,9 +118,12 @@ def weather(result: Result) -> str:
 
 def as_near(result: Result) -> str:
     """The open-loop error shows no clear difference."""
+    how = "and no effect explains how"
+    if result["moments"]:
+        how = f"for a force pushed the ship {when(result['moments'][0])}, and no effect explains it"
     return (
-        "Undecided: the readings differ from what is usual, and no effect explains how; but "
-        f"{_error(result)}, which is no clear difference."
+        f"Undecided: the readings differ from what is usual, {how}; but {_error(result)}, which is no clear "
+        "difference."
     )
 
 
@@ -180,7 +183,8 @@ def why_not(c: Result, reason: str) -> str:
         f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
         "true)",
         "not_significant": f"not one of its numbers is clearly other than {none}",
-        "change_within_form": f"not one of its numbers is clearly other than {none}",
+        "change_within_form": "what changed is no clear gain by itself, or no more than the form that the "
+        "ship file has of it may be wrong by",
         "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
         f"({num(c['error_with'], 3)} m with it)"
         if nearer(c)

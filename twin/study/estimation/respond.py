@@ -101,11 +101,13 @@ def _beyond(x: np.ndarray, at: np.ndarray, turned: np.ndarray | None = None) -> 
 
 def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
     """What readings (N, 8), in SI, are off by, the satellites' at the step at which what they show was
-    true, so that a filter mends the motion of that step by them; on each stretch what was shown before its
-    first step goes to its last ones, that nothing is lost or won by being late."""
+    true, so that a filter mends the motion of that step by them. What was shown before a stretch's first
+    step was true on a way that nobody saw: at the last steps, where nothing was shown yet, stands what the
+    readings after it are off by, that nothing is lost or won by being late."""
     out, steps = e.copy(), round(late_s / track.h)
     for a, b in stretches(track) if steps else ():
-        out[a:b, SATELLITES] = np.roll(e[a:b, SATELLITES], -steps, axis=0)
+        after = np.concatenate([e[a + steps : b], e[a + steps : min(a + 2 * steps, b)]])
+        out[a:b, SATELLITES] = np.resize(after, (b - a, 8))[:, SATELLITES] if len(after) else np.nan
     return out
 
 
