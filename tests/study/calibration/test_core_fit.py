@@ -207,7 +207,7 @@ def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship
         turns had been taken for sway)."""
     recordings = simulate(
         [
-            SeaCase("container", m, seed=970 + i, duration_s=900.0)
+            SeaCase("container", m, seed=970 + i, duration_s=600.0)
             for i, m in enumerate(("zigzag_20", "turning_circle", "mixed"))
         ]
     )

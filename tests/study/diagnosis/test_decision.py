@@ -244,8 +244,6 @@ def test_every_reason_for_not_naming_has_words_of_its_own():
     c = {"parameters": [], "error_with": 1.0, "error_without": 2.0, "posterior": 0.85, "probability": 0.42}
     reasons = [*(rule.reason for rule in CAUSE_RULES), SECOND_NOT_SURE]
     said = {reason: words(c, reason) for reason in reasons}
-    both = said.pop("change_within_form")
-    assert both == said["not_significant"]
     assert len(set(said.values())) == len(said)
     assert said["unlikely"] == (
         "its posterior probability, 85 %, is below the 90 % needed to name it (42 %: how often such an answer "
