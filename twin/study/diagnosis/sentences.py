@@ -4,7 +4,7 @@ bridge."""
 from typing import Any
 
 from twin.num import num, percent
-from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER
+from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER, SIGNIFICANT
 
 Result = dict[str, Any]
 SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for more voyages."
@@ -168,7 +168,7 @@ def cannot_tell(result: Result) -> str:
 
 def why_not(c: Result, reason: str) -> str:
     """Why what is likely is not named: the words of each reason of the decision."""
-    none = "the ship file has it" if any("in_ship_file" in p for p in c["parameters"]) else "none"
+    none = "what the ship file has" if any("in_ship_file" in p for p in c["parameters"]) else "none"
     with_it = (
         f"{num(c['error_with'], 3)} m with it, {num(c['error_without'], 3)} m without"
         if c["error_with"] is not None
@@ -182,7 +182,8 @@ def why_not(c: Result, reason: str) -> str:
         "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
         f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
         "true)",
-        "not_significant": f"not one of its numbers is clearly other than {none}",
+        "not_significant": f"all its numbers together are less than {SIGNIFICANT:g} standard deviations from "
+        f"{none}, and an instrument is named from there on",
         "change_within_form": "what changed is no clear gain by itself, or no more than the form that the "
         "ship file has of it may be wrong by",
         "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
