@@ -8,6 +8,7 @@ import pytest
 from twin.num import num
 from twin.physics.effects import find
 from twin.physics.model import Model
+from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s, waves_in_words, waves_on
 from twin.study.prediction.openloop import coarse
 from twin.study.reference import seaway
@@ -161,3 +162,24 @@ def test_waves_stir_the_mean_of_what_drag_does_and_nothing_without_waves(rough, 
     added = np.median((next(more) - next(more))[200:-200, 1])
     by_hand = -0.5 * float(tanker.rho) * float(tanker.L_pp) * float(tanker.T) * 0.4 * 0.5**2 / drag.c.m_v
     assert added == pytest.approx(by_hand, rel=0.15)
+
+
+def test_an_antenna_on_a_mast_swings_with_the_roll_that_is_averaged_for_the_forces(rough, tanker):
+    """Test: a roll of 3 deg with the waves, an antenna 30 m above the axis. Expected: by hand, the velocity that it
+    shows athwart swings by height times rate of roll, before and after; the roll that drives the ship is nearly
+    gone; and half of the track holds half of the roll."""
+    omega, phi = 2.0 * np.pi / wave_period_s(rough), np.radians(3.0)
+    swing = {"phi": phi * np.sin(omega * rough.t), "p": phi * omega * np.cos(omega * rough.t)}
+    rolling = replace(rough, weather={**rough.weather, **swing})
+    model = Model.of(tanker).but(find("AntennaOffset")(ahead=0.0, above=30.0))
+    seen = {
+        name: respond(t, model)[1][200:-200, 4]
+        for name, t in (("as it was", rolling), ("averaged", levelled(rolling)))
+    }
+    np.testing.assert_allclose(seen["averaged"], seen["as it was"], atol=1e-9)
+    still = respond(rough, Model.of(tanker))[1][200:-200, 4]
+    assert np.std(seen["averaged"] - still) == pytest.approx(30.0 * phi * omega / 2.0**0.5, rel=0.05)
+    once, twice = levelled(rolling), levelled(levelled(rolling))
+    assert np.std(once.weather["phi"][200:-200]) < 0.1 * np.std(swing["phi"])
+    assert np.array_equal(twice.rolled["phi"], once.rolled["phi"])
+    assert once.part(0, 100).rolled["p"].size == 100

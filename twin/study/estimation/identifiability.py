@@ -7,7 +7,6 @@ the span of the core's columns: 90 deg is apart, 0 deg is the same thing under a
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -140,17 +139,7 @@ def _thinned(t: Track) -> Track:
     """
     rows = np.flatnonzero(t.whole)
     rows = rows[:: max(1, rows.size // ROWS)]
-    return replace(
-        t,
-        t=t.t[rows],
-        state=t.state[rows],
-        delta=t.delta[rows],
-        n=t.n[rows],
-        weather={k: w[rows] for k, w in t.weather.items()},
-        measured=t.measured[rows],
-        whole=t.whole[rows],
-        orders=None if t.orders is None else {k: x[rows] for k, x in t.orders.items()},
-    )
+    return t.where(rows)
 
 
 def text(result: Mapping[str, Any]) -> list[str]:

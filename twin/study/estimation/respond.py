@@ -31,7 +31,7 @@ def sailing(track: Track, model: Model, kept: KeptForces | None = None) -> tuple
     s = track.situation(**steered(track, model, kept))
     nu_dot = _nu_dot(s, model)
     s.u_dot, s.v_dot, s.r_dot = nu_dot.T
-    return s, nu_dot
+    return track.instruments(s), nu_dot
 
 
 def accelerations(track: Track, model: Model, kept: KeptForces | None = None) -> np.ndarray:
@@ -235,7 +235,7 @@ def moving(track: Track, model: Model) -> Situation:
     """What the ship does along the track, its accelerations included, were the instruments right."""
     s = track.situation()
     s.u_dot, s.v_dot, s.r_dot = model.nu_dot(s)
-    return s
+    return track.instruments(s)
 
 
 def faulty(s: Situation, model: Model) -> np.ndarray:

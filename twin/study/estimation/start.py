@@ -113,7 +113,7 @@ def kinematics(place: np.ndarray, h: float) -> np.ndarray:
 
 def _read(track: Track, model: Model, state: np.ndarray, wind_to: np.ndarray | None) -> Situation:
     """What the faulty instruments show of a ship that moves so."""
-    s = track.situation(**dict(zip(STATE, state.T, strict=True)))
+    s = track.instruments(track.situation(**dict(zip(STATE, state.T, strict=True))))
     s.wind_to, s.u_r, s.v_r = wind_to, s.u, s.v
     s.u_dot, s.v_dot, s.r_dot = (np.gradient(x, track.h) for x in (s.u, s.v, s.r))
     for fault in model.faults:

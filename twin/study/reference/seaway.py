@@ -140,12 +140,13 @@ def _along(track: Track, model: Model, time: float) -> list[np.ndarray]:
 
 def levelled(track: Track) -> Track:
     """The track with its roll averaged over one period of the waves: how it heels to a wave would be taken
-    for its cause."""
+    for its cause. An antenna swings with it all the same (`Track.rolled`)."""
     if track.swell is None:
         return track
     steps = max(1, round(wave_period_s(track) / track.h))
-    heel = {name: running_mean(track.weather[name], steps) for name in ("phi", "p") if name in track.weather}
-    return replace(track, weather={**track.weather, **heel})
+    rolled = dict(track.rolled) or {k: x for k, x in track.weather.items() if k in ("phi", "p")}
+    heel = {name: running_mean(x, steps) for name, x in rolled.items()}
+    return replace(track, weather={**track.weather, **heel}, rolled=rolled)
 
 
 def excited(track: Track, model: Model) -> np.ndarray:

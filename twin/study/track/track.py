@@ -69,6 +69,8 @@ class Track:
     # of a ship with actuators of its own what is recorded of them, `name.attribute` in SI; else None
     orders: Mapping[str, np.ndarray] | None = None
     jumps: tuple[Jump, ...] = ()  # stretches whose readings do not count (outliers.py)
+    # its roll as it was, where that of `weather` is averaged over a wave (seaway.py)
+    rolled: Mapping[str, np.ndarray] = field(default_factory=dict)
     # behind each steering gear
     rudder: dict[Any, Any] = field(init=False, repr=False, compare=False, default_factory=dict)
 
@@ -86,6 +88,10 @@ class Track:
                 | replaced
             )
         )
+
+    def instruments(self, s: Situation) -> Situation:
+        """The same moment for what is fixed to the ship and shows it, in SI: a wave rolls that as well."""
+        return replace(s, **self.rolled)
 
     def missing(self) -> set[str]:
         """Fields of Situation that were not measured: effects that need one are switched off."""
@@ -116,6 +122,7 @@ class Track:
             swell=swell,
             ripple=ripple,
             orders=None if self.orders is None else {k: x[keep] for k, x in self.orders.items()},
+            rolled={k: x[keep] for k, x in self.rolled.items()},
         )
 
     def steps(self) -> np.ndarray:
