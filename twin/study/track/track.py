@@ -91,7 +91,7 @@ class Track:
 
     def instruments(self, s: Situation) -> Situation:
         """The same moment for what is fixed to the ship and shows it, in SI: a wave rolls that as well."""
-        return replace(s, **self.rolled)
+        return replace(s, **self.rolled) if self.rolled else s
 
     def missing(self) -> set[str]:
         """Fields of Situation that were not measured: effects that need one are switched off."""
