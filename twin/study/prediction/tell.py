@@ -21,7 +21,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"{result['ship']}, {len(result['voyages'])} voyage{'s' * (len(result['voyages']) > 1)}; model: core"
         + "".join(f" + {e}" for e in result["model"]["effects"])
         + (" + residual" if result["model"].get("residual") else ""),
-        *_horizons(result["horizons"]),
+        *horizon_lines(result["horizons"]),
         *_channels(result["channels"]),
         *_forces(result),
         *_where(result),
@@ -42,7 +42,8 @@ def _units(error: float, floor: float) -> str:
     return f"x{num(times, 3):<6}{'#' * bar}".rstrip()
 
 
-def _horizons(rows: list[dict[str, Any]]) -> list[str]:
+def horizon_lines(rows: list[dict[str, Any]]) -> list[str]:
+    """The open-loop error of each horizon beside what is expected, in m and deg, under its heading."""
     of = rows[0]["noise_floor"]["of"]
     heads = ("position [m]", "across [m]", "heading [deg]", f"position over expected ({of})")
     out = ["", f"open loop   {_in_columns(heads)}"]
