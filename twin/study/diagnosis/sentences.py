@@ -182,8 +182,8 @@ def why_not(c: Result, reason: str) -> str:
         "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
         f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
         "true)",
-        "not_significant": f"all its numbers together are less than {num(SIGNIFICANT, 1)} standard deviations "
-        f"from {none}, and an instrument is named from there on",
+        "not_significant": f"all its numbers together are less than {num(SIGNIFICANT, 1)} standard "
+        f"deviations from {none}, and an instrument is named from there on",
         "change_within_form": "what changed is no clear gain by itself, or no more than the form that the "
         "ship file has of it may be wrong by",
         "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
