@@ -8,7 +8,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 # the tests start hundreds of commands: none needs to compile what another has compiled
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test lint types tests budget others paper bench clean help
+.PHONY: demo test lint types tests budget others thorough paper bench clean help
 
 help:  ## these words
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
@@ -16,7 +16,7 @@ help:  ## these words
 demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what its owner finds
 	$(BIN)/twin demo
 
-test: lint budget  ## the same with the tools of development: ruff, mypy and all tests, the paper's tables in small among them
+test: lint budget  ## the same with the tools of development: ruff, mypy and the tests
 	@$(MAKE) --no-print-directory --jobs types others
 
 lint: $(VENV)/.development  ## ruff
@@ -31,8 +31,14 @@ budget: $(VENV)/.development
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 
 # one process more than cores, for a third of the service's tests is waiting; four at most
+SIDE_BY_SIDE = OMP_NUM_THREADS=1 $(BIN)/python -m pytest --dist loadfile -n \
+	$$($(BIN)/python -c "import os; print(min(4, os.cpu_count() + 1))")
+
 others: $(VENV)/.development
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $$($(BIN)/python -c "import os; print(min(4, os.cpu_count() + 1))") --dist loadfile --ignore tests/bench/test_tick.py
+	$(SIDE_BY_SIDE) --ignore tests/bench/test_tick.py
+
+thorough: $(VENV)/.development  ## the tests that take long and tell more of what a shorter one tells already: before a release
+	$(SIDE_BY_SIDE) -m thorough
 
 paper: $(VENV)/.development  ## the paper's tables in small, printed: two minutes
 	OMP_NUM_THREADS=1 $(BIN)/twin-bench paper --quick

@@ -13,6 +13,7 @@ import pytest
 
 import twin
 from tests import command_lines
+from tests.thorough import one_of
 from twin.physics import ship as ships
 from twin.physics.ship_pair import tidy
 from twin.recording.read import read_voyage
@@ -62,7 +63,7 @@ def whole(folder, *ours):
     return True
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("verb", one_of(VERBS, 2))
 def test_a_kill_at_any_step_leaves_the_old_ship_or_the_new_and_the_next_writer_tidies(verb, folder, tmp_path):
     """Test: real SIGKILL before each opening, renaming and removing of a file of the ship. Expected: what is
     there loads and is the old or the new ship; after the next write no file is there that nobody names."""

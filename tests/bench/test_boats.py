@@ -14,6 +14,7 @@ from bench.cli import main
 from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
 from bench.reference.boats.drives import KINDS, screw
 from bench.reference.boats.helmsman import BoatLeg
+from tests.thorough import one_of
 from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
 from twin.physics.ship import load, save
@@ -124,7 +125,7 @@ def test_nothing_of_the_twin_is_in_the_boats():
             assert not any(name.split(".")[0] == "twin" for name in names), path
 
 
-@pytest.mark.parametrize("name", CRAFT)
+@pytest.mark.parametrize("name", one_of(CRAFT, 2))
 def test_a_builders_sheet_makes_a_ship_that_the_loop_sails_with(name, tmp_path):
     """Test: sheet, twin init, a minute of the sea, loop. Expected: in every tick on measurements, the names
     of the drives in the forces."""

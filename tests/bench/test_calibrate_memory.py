@@ -3,9 +3,11 @@
 import json
 
 from bench.cli import main
+from tests.thorough import thorough
 from twin.errors import ThresholdError
 
 
+@thorough
 def test_the_peak_is_measured_and_more_than_wanted_is_exit_code_3(tmp_path, capsys):
     """Test: one voyage of five minutes at 10 Hz, 50 MB wanted. Expected: a peak that Python with numpy has at least
     and that is far below what six long voyages may take; exit code 3 and one line with both numbers."""

@@ -12,6 +12,7 @@ from bench.league.truth import TABLE, beside
 from bench.reference.hidden_catalogue import CATALOGUE, prepare
 from bench.reference.hulls import HULLS
 from bench.reference.weather import CALM
+from tests.thorough import thorough
 from twin.physics.effects import catalogue, find
 
 KEYS = {
@@ -138,6 +139,7 @@ def test_an_answer_that_failed_is_an_alarm_and_not_a_name():
     assert league_score.alarm(failed) and not league_score.named(row(missing=[], verdict="failed"))
 
 
+@thorough
 def test_three_short_voyages_go_through_the_whole_league(tmp_path, capsys):
     options = [
         "--quick",

@@ -9,6 +9,7 @@ import pytest
 from bench.instruments_plant import SIZES, planted
 from bench.instruments_real import SOURCES, YACHT, log_lacks
 from bench.reference import HULLS
+from tests.thorough import thorough
 from twin.recording.read import read_voyage
 from twin.study.instruments.instrument_estimate import estimate
 
@@ -73,6 +74,7 @@ def test_a_fault_is_planted_as_it_is_named(sailed, fault, channel, more):
     assert difference == pytest.approx(more, abs=2e-4)
 
 
+@thorough
 @pytest.mark.skipif(not DATA, reason="SHIPTWIN_DATA says where real voyages are")
 def test_two_real_circles_agree_about_the_log_within_eight_per_cent():
     shown = []

@@ -7,6 +7,7 @@ import pytest
 from bench import memory_growth
 from bench.cli import main
 from bench.memory_growth import CHILD, slope
+from tests.thorough import thorough
 from twin.errors import ThresholdError, UsageError
 
 MOST = ["--most-mb", "70"]  # a slope over two minutes is no better than so; the planted leak is 180
@@ -18,6 +19,7 @@ Segment.close = lambda segment: (kept.append(b"x" * 500_000), close(segment))
 """
 
 
+@thorough
 def test_a_service_that_is_well_passes_and_has_done_all_its_work(tmp_path):
     """Test: 144 s at 10 Hz after 18 s of warm-up, a file each 15 min and each 10 s. Expected: every tick with the
     learned force, nearly all with a promise, nine messages a tick in the log, many files in the second process."""

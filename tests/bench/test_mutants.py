@@ -6,6 +6,7 @@ from bench.mutants import run
 from bench.mutants.guarded import GUARDED, PARTS, Guarded
 from bench.mutants.mutate import mutants
 from bench.mutants.reach import Reached, reached, reaching
+from tests.thorough import thorough
 
 SOURCE = '''
 LIMIT = 4
@@ -51,6 +52,7 @@ def test_every_file_that_guards_and_every_test_of_it_is_there():
         assert all(run.python_files(test) and (run.ROOT / test).exists() for test in guarded.tests)
 
 
+@thorough
 def test_a_fault_is_noticed_by_a_test_that_looks_and_survives_one_that_does_not(tmp_path, monkeypatch):
     """Test: the text of lagging with its limit turned, under a test of it and under one of the clock; and a
     second run. Expected: noticed, not noticed; the second run tries nothing again."""

@@ -21,6 +21,7 @@ from bench.paper.lab import course, free, judge  # noqa: E402
 from bench.paper.nominal_ship import OFF, nominal  # noqa: E402
 from bench.paper.page import page  # noqa: E402
 from export.data import split  # noqa: E402
+from tests.thorough import thorough  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 
 
@@ -171,6 +172,7 @@ def tiny(tmp_path_factory):
         gc.unfreeze()
 
 
+@thorough
 def test_every_table_is_made_and_keeps_the_contract(tiny):
     result, _ = tiny
     assert set(result["tables"]) >= {"3", "4", "5", "6", "7", "8", "fig5", "data", "fig6_ms"}
@@ -186,10 +188,12 @@ def test_every_table_is_made_and_keeps_the_contract(tiny):
     json.dumps(result, allow_nan=False)
 
 
+@thorough
 def test_the_lstm_says_the_same_as_onnx(tiny):
     assert tiny[0]["models"]["lstm"]["torch_onnx_difference"] < 1e-6
 
 
+@thorough
 def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
     result, folder = tiny
     text = "\n".join(page(result))
@@ -214,6 +218,7 @@ def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
     assert all(path.stat().st_size < 150_000 for path in (folder / "figures").iterdir())
 
 
+@thorough
 def test_the_loop_closed_over_the_reference_sea_settles_and_a_hostile_residual_stays_bounded(tiny):
     """Expected: without a residual, settled within six lengths with hardly any overshoot and the rudder far
     from its stop; a hostile one, as strong as its bound allows, cannot turn it round."""

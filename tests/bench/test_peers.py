@@ -10,6 +10,7 @@ from bench.tick.ekf import ShipFilter
 from bench.tick.memory import memory
 from bench.tick.ort import session
 from bench.tick.timing import hot_us, quantiles
+from tests.thorough import thorough
 from twin.live.loop import Loop
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -107,6 +108,7 @@ def test_the_yardstick_conserves_momentum():
     assert [sum(v[i] * m for _, v, m in bodies) for i in range(3)] == pytest.approx(before)
 
 
+@thorough
 @pytest.mark.skipif(not instructions.available(), reason="valgrind is not installed")
 def test_instruction_counts_repeat(tmp_path):
     """Expected: two runs differ by less than a thousandth (where a home folder lies moves a few hundred)."""

@@ -15,6 +15,7 @@ from bench.real.planted_faults import (
     late_receiver,
     turned_compass,
 )
+from tests.thorough import thorough
 from twin.commands.story import SHIP
 from twin.physics.effects import find
 from twin.physics.ship import load
@@ -89,6 +90,7 @@ def test_every_fault_has_a_name_in_the_catalogue_and_changes_the_readings(voyage
     assert len({fault.words for fault in FAULTS}) == len(FAULTS)
 
 
+@thorough
 def test_the_table_says_what_was_put_and_what_was_named():
     ship = load(SHIP)
     from twin.commands.story import TUESDAY

@@ -20,6 +20,7 @@ from bench.stability.attack.orders import ages_of, random_orders
 from bench.stability.attack.run_batch import sail
 from bench.stability.attack.section import HEAD, section_of, with_section
 from bench.stability.attack.waters import Waters
+from tests.thorough import one_of
 from twin.live.certificate.observer_tube import Tube
 
 CONTAINER, BOAT, ROLLED = (
@@ -44,7 +45,7 @@ def test_no_adversary_breaks_the_bound_inside_the_assumptions(case):
     assert all(g.of_bound.max() <= 1.0 for g in found.groups)
 
 
-@pytest.mark.parametrize("case", [ROLLED, AttackCase("kvlcc2_model", 10.0)])
+@pytest.mark.parametrize("case", one_of([ROLLED, AttackCase("kvlcc2_model", 10.0)]))
 def test_samples_of_different_ages_break_neither_the_live_bound_nor_the_one_of_any_ages(case):
     found = attack(case, 600, 3, MIXED_GROUPS).groups
     assert [g.violations for g in found] == [0] * len(MIXED_GROUPS)

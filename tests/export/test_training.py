@@ -17,6 +17,7 @@ from export.residual_network import ResidualNetwork  # noqa: E402
 from export.settings import TrainingSettings  # noqa: E402
 from export.teach import device, prepared, teach  # noqa: E402
 from export.training_course import TrainingCourse  # noqa: E402
+from tests.thorough import thorough  # noqa: E402
 from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live.learning import residual as live  # noqa: E402
@@ -203,6 +204,7 @@ def test_voyages_recorded_at_other_rates_come_on_one_grid(ship, sailed):
     assert [t.h for t in train.on_one_grid(mixed, ship)] == pytest.approx([4.0, 4.0])
 
 
+@thorough
 def test_it_learns_from_voyages_that_came_through_twin_import(ship, sailed, tmp_path, capsys):
     """Test: five CSV files -> twin import -> twin train. Expected: exit code 0, and two files that the twin
     takes."""

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.live.conftest import Sailing
+from tests.thorough import one_of, thorough
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.demonstration import ticks_of
@@ -120,7 +121,7 @@ VOYAGES = {  # ship, position, heading, what has been sailed before: beyond ever
 }
 
 
-@pytest.mark.parametrize("name", VOYAGES)
+@pytest.mark.parametrize("name", one_of(VOYAGES))
 def test_I20_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_service):
     """Test: five minutes with several moves, then half a minute without log and without compass, gyro and course
     carrying the heading. Expected: both loops say the same of motion, health and promise; place and prediction are off
@@ -227,6 +228,7 @@ def live_log(kvlcc2, certificate_file, tmp_path_factory):
     return path, chosen, kvlcc2.U_0, off_m
 
 
+@thorough
 def test_I20_a_voyage_on_which_the_chart_went_along_replays_to_the_same_states_and_bytes(live_log, tmp_path):
     path, chosen, _, _ = live_log
     again = [tmp_path / f"{k}.mcap" for k in range(3)]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.live.actuators import PODS, SIDES, WALL, Afloat, Service, craft, shown
+from tests.thorough import thorough
 from twin.live.keelson import messages
 from twin.live.keelson.messages import encode_float
 from twin.live.log.mcap_read import McapReader
@@ -167,6 +168,7 @@ def test_an_actuator_that_answers_late_is_where_its_order_was(make):
     assert [y for _, y in seen] == [600, 600, 600, 900, 900, 900]
 
 
+@thorough
 def test_the_loss_of_one_thruster_is_learned_on_board(make):
     """Test: the file has ThrusterWear.port at none, the ship has lost 40 % there. Expected: the number that
     is published goes most of the way, and that of the other side stays near none."""

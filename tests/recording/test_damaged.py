@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.thorough import thorough
 from twin.cli import main
 from twin.commands.story import MONDAY, SHIP
 from twin.errors import DataError
@@ -164,6 +165,7 @@ def test_losses_are_one_line_a_voyage():
     assert losses(entries) == ["lost  v: cut"]
 
 
+@thorough
 def test_diagnose_says_it_too(whole, tmp_path, capsys):
     path, answer = Path(shutil.copy(whole, tmp_path / "v.mcap")), tmp_path / "a.json"
     cut(path, 0.7)

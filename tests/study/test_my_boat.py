@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.thorough import thorough
 from twin import cli
 from twin.physics.ship import load
 
@@ -40,6 +41,9 @@ def done(program, words, folder):
     env = os.environ | {"PYTHONPATH": str(ROOT)}
     ended = subprocess.run([sys.executable, *words], cwd=folder, capture_output=True, text=True, env=env)
     return ended.returncode, ended.stderr
+
+
+pytestmark = thorough
 
 
 @pytest.fixture(scope="module")

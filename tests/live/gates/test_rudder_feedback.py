@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.thorough import thorough
 from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.residual import bundled, load
 from twin.physics.effects import find
@@ -62,6 +63,7 @@ def test_I6_a_rudder_feedback_that_is_stuck_teaches_nothing(kvlcc2, make_bridge,
     assert any(said) == found
 
 
+@thorough
 def test_a_feedback_that_moves_again_is_believed_after_a_while(kvlcc2, make_bridge):
     bridge, learned = learning(kvlcc2, make_bridge)
     bridge.run(400.0)

@@ -4,6 +4,7 @@ from math import isfinite, nan
 
 import pytest
 
+from tests.thorough import one_of
 from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.residual import bundled, load
 from twin.live.signals.readings import Quality, Rejected
@@ -254,7 +255,7 @@ def test_I8_a_sensor_silent_for_hours_is_only_stale(bridge):
     assert isfinite(bridge.run(1.0, only(YAW, lambda r, b: None))[-1].estimate.yaw_rate_degps)
 
 
-@pytest.mark.parametrize("name", (HEADING, SURGE, YAW))
+@pytest.mark.parametrize("name", one_of((HEADING, SURGE, YAW)))
 def test_I6_of_a_reading_that_is_stuck_for_minutes_nothing_is_learned(kvlcc2, make_bridge, name):
     """Test: a zigzag with learning on, then one instrument says the same for three minutes. Expected:
     learning stands still after five seconds, and what they taught moved no number by a hundredth."""

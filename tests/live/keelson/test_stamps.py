@@ -5,6 +5,7 @@ from math import isfinite
 
 import pytest
 
+from tests.thorough import one_of
 from twin.live.keelson.stamps import Stamps
 from twin.live.signals.readings import Quality, Reading
 
@@ -79,7 +80,7 @@ def test_C9_an_instruments_clock_that_is_set_costs_two_seconds_at_most(served, s
     assert reckoned_s(ticks) < 2.5 and all(t.mode in WELL for t in ticks[30:])
 
 
-@pytest.mark.parametrize("drift", [1e-3, -1e-3, 1e-2, -1e-2, 3e-2, -3e-2])
+@pytest.mark.parametrize("drift", one_of([3e-2, -3e-2, 1e-3, -1e-3, 1e-2, -1e-2], 2))
 def test_C9_a_clock_that_drifts_is_followed(served, drift):
     """Test: the instruments' clocks run fast or slow, to 3 s off and more. Expected: never in dead reckoning,
     the size in words."""

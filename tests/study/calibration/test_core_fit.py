@@ -11,6 +11,7 @@ from bench.bundled import recorded
 from bench.real.planted_faults import PlantedReadings, antenna_elsewhere
 from bench.reference import SeaCase, simulate
 from tests.study.conftest import seldom
+from tests.thorough import thorough
 from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
@@ -200,6 +201,7 @@ def on_a_mast(v, height):
     ).into(v)
 
 
+@thorough
 def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship():
     """Test: three voyages of a container ship that heels by some degrees in its turns, seen by an antenna 30
     m above the axis of roll, and by a low one.

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.thorough import one_of, thorough
 from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue, find
@@ -74,7 +75,7 @@ def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
     assert two["high95"] - two["low95"] < one["high95"] - one["low95"]
 
 
-@pytest.mark.parametrize("name", ["HeadingBias", "Current", "RudderWear"])
+@pytest.mark.parametrize("name", one_of(["RudderWear", "Current", "HeadingBias"], 2))
 def test_an_effect_hidden_in_the_reference_sea_is_named(diagnosed, name):
     result = diagnosed(name)
     assert result["verdict"] == "missing"
@@ -103,6 +104,7 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     )
 
 
+@thorough
 def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
     """Test: a tank of an eighth of its mass, forward or aft, whose liquid swings aside. Expected: unknown, no
     name, and what it looks like."""
@@ -113,6 +115,7 @@ def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
     assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
 
 
+@thorough
 def test_what_stands_clear_of_what_calibration_left_unexplained_is_named_all_the_same(tanker, voyages):
     """Test: a strong stream, asked of a ship file that leaves half of what turns the ship unexplained.
     Expected: it is the answer, for a log shows the water without any model of turning."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.commands.story import MONDAY
 from twin.errors import SettingsError
 from twin.physics.model import Model
@@ -74,6 +75,7 @@ def test_a_number_that_its_owner_changes_by_hand_changes_in_both(files):
     assert after - before == pytest.approx(moved)
 
 
+@thorough
 def test_what_is_usual_on_the_ship_is_that_about_the_core_by_steps(files, tracks):
     """Offsets, covariance, noise and scores of the references are those about the core that they are read
     with; the errors of the path are those of the core that predicts."""

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.physics.effects import find
 from twin.study.diagnosis import moments as moment_of
 from twin.study.diagnosis.assemble import assemble
@@ -61,6 +62,7 @@ def test_what_a_late_receiver_showed_of_before_the_recording_is_no_push_at_its_e
     assert max(m.log_evidence for m in asked if m.end_s > end_s - late_s) < 0.0
 
 
+@thorough
 def test_ships_that_pass_are_seen_when_they_pass_and_nothing_is_said_to_be_in_order(tanker, voyages):
     """Test: ships that pass every 11 lengths (439 s), each for about one. Expected: unknown, and the times at
     which they did."""

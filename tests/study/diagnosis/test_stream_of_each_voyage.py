@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.errors import DataError
 from twin.physics.effects.current import Current
 from twin.physics.effects.rudder_offset import RudderOffset
@@ -23,6 +24,7 @@ def sailed(make):
     return both
 
 
+@thorough
 def test_a_healthy_ship_on_two_days_lacks_nothing_but_each_days_stream(sailed, kvlcc2):
     said = diagnose(sailed(), kvlcc2).result
     assert (said["verdict"], said["missing"]) == ("missing", ["Current"])

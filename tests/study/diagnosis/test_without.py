@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.physics.effects import find
 from twin.study.diagnosis.consider import consider
 from twin.study.diagnosis.decision import decide
@@ -25,6 +26,7 @@ def test_an_effect_that_the_ship_had_is_put_back_to_what_it_was(worn):
     assert without(found.model, case.model, "RudderWear").effects == case.model.effects
 
 
+@thorough
 def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(case_of):
     case = case_of("IceLike")
     case, weighed, found, seen, _ = search(case)
