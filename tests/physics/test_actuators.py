@@ -222,6 +222,30 @@ def test_an_effect_of_an_actuator_that_the_ship_has_not_is_refused():
     assert all(e.__doc__ and e.source for e in OF_ACTUATORS)
 
 
+def test_what_several_of_one_make_have_alike_is_the_sum_of_what_each_has():
+    """Expected: asked about where two of one make can have it, told of both, and refused of an effect that
+    each has for itself."""
+    starboard = PORT | {"name": "starboard", "y_m": -PORT["y_m"]}
+    bow = PORT | {"name": "bow", "kind": "tunnel_thruster"}
+    ship = ship_with(PORT, starboard, bow)
+    alike = [name for name in of_ship(ship) if "+" in name]
+    assert alike == ["ThrusterWear.port+starboard"]
+    both = find("ThrusterWear.port+starboard")
+    assert both.sentence(ship).startswith("The port thruster and the starboard thruster give less thrust")
+    s = Situation(
+        u=1.0, v=0.1, r=0.05, orders={"port.command": 0.6, "starboard.command": 0.3, "bow.command": 0.0}
+    )
+    Model.of(ship).nu_dot(s)
+    each = [find(f"ThrusterWear.{name}")(loss=0.2).force(s, ship) for name in ("port", "starboard")]
+    together = both(loss=0.2).force(s, ship)
+    assert together.X < 0.0 and np.allclose(together, np.sum(each, axis=0), rtol=1e-12)
+    assert pickle.loads(pickle.dumps(both(loss=0.2))) == both(loss=0.2)
+    with pytest.raises(SettingsError, match="no actuator is called 'stern'"):
+        find("ThrusterWear.port+stern")(loss=0.1).check(ship)
+    with pytest.raises(SettingsError, match="of one actuator alone"):
+        find("ThrusterZero.port+starboard")
+
+
 @pytest.mark.parametrize("effect, said", [
     ("ThrusterWear.port", "The port thruster gives less thrust"),
     ("ThrusterWear.bow", "The bow thruster gives less thrust"),

@@ -5,8 +5,8 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.ship import load
-from twin.recording.headers import GROUND
 from twin.recording.map_file import parse_map
+from twin.recording.mapping import GROUND
 from twin.recording.read import read_voyage
 from twin.study.track.track import READINGS, track
 

@@ -46,6 +46,20 @@ def test_a_map_names_columns_units_signs_frames_and_the_clock(tmp_path):
     assert v.meta["start_time_utc"] == "2024-05-17T08:30:00.500000Z"
 
 
+def test_speed_and_course_and_north_and_east_may_be_called_by_their_own_names():
+    """Expected: the same map as with the ship's axes and a frame; a velocity that has two entries is refused."""
+    rest = {n: c for n, c in MAP["columns"].items() if n not in ("surge_velocity_mps", "sway_velocity_mps")}
+    own = {"speed_over_ground_mps": {"column": "sog", "unit": "kn"}, "course_over_ground_deg": "cog"}
+    assert parse_map(MAP | {"columns": own | rest}, "my.toml") == parse_map(MAP, "my.toml")
+    by = parse_map({"columns": {"velocity_north_mps": 3, "velocity_east_mps": {"sign": -1}}}, "my.toml")
+    assert {n: (c.parts, c.frame) for n, c in by.columns.items()} == {
+        "surge_velocity_mps": ((3,), "earth"),
+        "sway_velocity_mps": (("velocity_east_mps",), "earth"),
+    }
+    with pytest.raises(SettingsError, match="course_over_ground_deg is a second entry for sway_velocity_mps"):
+        parse_map({"columns": {"sway_velocity_mps": "v", "course_over_ground_deg": "cog"}}, "my.toml")
+
+
 def test_froudes_law_makes_a_ship_of_a_model(columns, write_csv):
     names = {n: {"column": n} for n in columns if n != "time_s"}
     by = parse_map({"time": {"column": "time_s"}, "columns": names, "scale": {"froude": 4.0}}, "m.toml")

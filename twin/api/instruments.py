@@ -28,6 +28,7 @@ class InstrumentCheck(Result):
     interval, whether it was seen, and what these voyages cannot tell."""
 
     found: Instruments = field(repr=False)
+    ship: Ship | None = field(default=None, repr=False)
 
     @property
     def faults(self) -> list[str]:
@@ -57,7 +58,7 @@ class InstrumentCheck(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin instruments`."""
-        return terminal_lines(self.found)
+        return terminal_lines(self.found, self.ship.effects if self.ship else ())
 
     def _rows(self) -> Any:
         return self.data["numbers"]
@@ -125,4 +126,4 @@ def instruments(
         asked = [v.with_meta(velocity_frame=FRAMES[velocity_by]) for v in asked]
     found = estimate(asked, float(ship.L_pp) if ship else None, quietly(progress))
     said = {"schema_version": 1, "ship": ship.name if ship else None} | as_json(found)
-    return InstrumentCheck(found, data=plain(said))
+    return InstrumentCheck(found, ship, data=plain(said))

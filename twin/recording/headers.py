@@ -8,15 +8,11 @@ from pathlib import Path
 
 from twin.errors import DataError
 from twin.live.signals.channels import BY_NAME
-from twin.recording.mapping import FRAMED, NAMES, PLACES, Column, Layout, Map, TimeColumn, nearest
+from twin.recording.mapping import FRAMED, GROUND, NAMES, PLACES, Column, Layout, Map, TimeColumn, nearest
 from twin.recording.place import CHART
 from twin.recording.sheet import Sheet, open_text
 
 TIMES = ("time_s", "time_utc")
-GROUND = {  # what stands for the velocities in the ship's axes, by the frame that a map would name
-    "course": ("speed_over_ground_mps", "course_over_ground_deg"),
-    "earth": ("velocity_north_mps", "velocity_east_mps"),
-}
 ALLOWED = (*NAMES, *TIMES, *(name for pair in GROUND.values() for name in pair))
 OVER_GROUND = ("sog", "cog", "course", "over_ground", "velocity_north", "velocity_east")
 MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quantity

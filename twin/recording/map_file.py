@@ -14,6 +14,7 @@ from twin.physics.actuators.actuator_channels import CHANNELS_OF
 from twin.recording.mapping import (
     FRAMED,
     FRAMES,
+    GROUND,
     HEADING,
     NAMES,
     PLACES,
@@ -79,7 +80,8 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     meant."""
     known(data, ("description", "file", "time", "columns", "constant", "scale"), where)
     scale = known(data.get("scale", {}), ("froude",), f"{where}: [scale]").get("froude", 1.0)
-    columns = {name: column(name, entry, where) for name, entry in data.get("columns", {}).items()}
+    entries = in_frames(data.get("columns", {}), where)
+    columns = {name: column(name, entry, where) for name, entry in entries.items()}
     constant = {n: number(x, f"{where}: [constant] {n}") for n, x in data.get("constant", {}).items()}
     for name in constant:
         channel_name(name, where)
@@ -105,6 +107,22 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
         froude_scale=float(scale),
         description=str(data.get("description", "")),
     )
+
+
+def in_frames(entries: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The entries, those of speed and course over ground or of north and east as velocities in that frame.
+    SettingsError: one velocity has two."""
+    meant = {
+        name: (own, frame) for frame, pair in GROUND.items() for own, name in zip(FRAMED, pair, strict=True)
+    }
+    out = dict[str, Any]()
+    for name, entry in entries.items():
+        own, frame = meant.get(name, (name, None))
+        if own in out:
+            raise SettingsError(f"{where}: {name} is a second entry for {own}. Remove one of them.")
+        table = {"column": name} | dict(entry) if isinstance(entry, Mapping) else {"column": entry}
+        out[own] = table | {"frame": frame} if frame else entry
+    return out
 
 
 def column(name: str, entry: Any, where: str) -> Column:

@@ -11,6 +11,10 @@ PLACES = ("latitude_deg", "longitude_deg")
 HEADING = "heading_true_north_deg"
 NAMES = (*BY_NAME, *PLACES)
 FRAMES = ("body", "earth", "course")
+GROUND = {  # what stands for the velocities in the ship's axes, by the frame that a map would name
+    "course": ("speed_over_ground_mps", "course_over_ground_deg"),
+    "earth": ("velocity_north_mps", "velocity_east_mps"),
+}
 SEPARATORS = {"tab": "\t", "whitespace": " ", ",": ",", ";": ";", "\t": "\t", " ": " ", "|": "|"}
 Key = str | int  # a column by its name, or by its number from 1
 

@@ -8,9 +8,10 @@ import pytest
 from twin.physics import core
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.open_loop_check import mean_error_m
 from twin.study.estimation.columns import ROUGH
 from twin.study.estimation.respond import respond, standard
-from twin.study.estimation.rough import KNOWN, TERMS, accelerations, doubted
+from twin.study.estimation.rough import KNOWN, TERMS, accelerations, doubted, elsewhere
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +48,18 @@ def test_only_a_ship_that_learned_an_effect_after_her_calibration_has_such_colum
     )
     case = case_of("nothing")
     assert not any(u.owner == ROUGH for u in case.unknowns)
+
+
+def test_a_known_wind_that_a_voyage_did_not_record_pushes_it_nowhere_else(tanker, voyages):
+    """Test: a ship whose file knows the wind since it was calibrated, on a voyage without an anemometer.
+    Expected: how far off wind's lever may leave it there is nothing."""
+    calm = voyages["nothing"]
+    columns = {name: x for name, x in calm.columns.items() if "wind" not in name}
+    windy = tanker.with_effects(find("Wind").plausible(tanker))
+    case = assemble([calm.with_rows(calm.time_s, columns)], windy)
+    assert "wind_speed" in case.tracks[0].missing()
+    levered = [mean_error_m(case, model) for both in elsewhere(case.model) for model in both]
+    assert levered == pytest.approx([mean_error_m(case, case.model)] * 2, rel=1e-12)
 
 
 def test_a_steady_pull_that_a_known_wind_may_have_missed_tells_little(windy):

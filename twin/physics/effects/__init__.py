@@ -108,7 +108,17 @@ def of_ship(ship: ShipLike) -> dict[str, type[Effect]]:
         for family in OF_ACTUATORS
         if family.suits(a)
     ]
+    own += [of(family, "+".join(names)) for family in OF_ACTUATORS for names in _alike(family, ship)]  # type: ignore[arg-type]
     return known | {e.__name__: e for e in own}
+
+
+def _alike(family: type[OfActuator], ship: ShipLike) -> list[tuple[str, ...]]:
+    """The actuators of one make that may have this effect alike, each of several."""
+    makes = dict[tuple[object, ...], list[str]]()
+    for a in ship.actuators if family.of_several else ():
+        if family.suits(a):
+            makes.setdefault(a.make, []).append(a.name)
+    return [tuple(names) for names in makes.values() if len(names) > 1]
 
 
 def unnamed_of(ship: ShipLike) -> tuple[type[Effect], ...]:
@@ -172,6 +182,10 @@ def find(name: str) -> type[Effect]:
         if family == kind.__name__:
             if not dot or not actuator:
                 raise SettingsError(f"{family} is of one actuator: write {family}.NAME, as in {family}.port.")
+            if "+" in actuator and not kind.of_several:
+                raise SettingsError(
+                    f"{family} is of one actuator alone: write {family}.NAME for each of them."
+                )
             return of(kind, actuator)  # type: ignore[arg-type]
     if name in (e.__name__ for e in UNNAMED):
         raise SettingsError(

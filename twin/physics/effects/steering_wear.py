@@ -14,6 +14,10 @@ class SteeringWear(ActuatorForce):
     wider."""
 
     recorded = ("angle",)
+    of_several = (
+        "The rudders behind these actuators give less force at the same angle, all alike: the ship answers "
+        "late and turns wider."
+    )
     source = "Yasukawa & Yoshimura (2015) J. Mar. Sci. Technol. 20, 37-52, eq. (20)-(27): a share of F_N"
 
     loss: float = param(

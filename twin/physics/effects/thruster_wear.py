@@ -14,6 +14,7 @@ class ThrusterWear(ActuatorForce):
     """This actuator gives less thrust than its record says, so the ship is slower and is pulled to its
     side."""
 
+    of_several = "These actuators give less thrust than their record says, all alike, so the ship is slower."
     source = "Carlton (2018) Marine Propellers and Propulsion, 4th ed. (blade damage in service)"
 
     loss: float = param(

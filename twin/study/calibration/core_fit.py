@@ -29,6 +29,7 @@ from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.reference.derivatives import first_prior, informed_by, noted, with_derivatives
 from twin.study.reference.nuisance import TEMPER, instruments, temper_of
+from twin.study.reference.reading import fitted_parts
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.steering_gear import beside_its_gear, with_or_without_gear
@@ -209,7 +210,8 @@ def _rough(
     if begun:
         tracks = _in_its_sea(sailed, begun.model, progress)
         progress("fitting the core with the gear that was found")
-        rough = beside_its_gear(tracks, model.but(*begun.model.lags), unknowns, known, TEMPER)
+        parts = fitted_parts(tracks, model)
+        rough = beside_its_gear(parts, model.but(*begun.model.lags), unknowns, known, TEMPER)
     else:
         progress(
             "fitting the core, and testing whether "
@@ -220,14 +222,16 @@ def _rough(
             )
         )
         tracks = [levelled(t) for t in sailed]
-        rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+        parts = fitted_parts(tracks, model)
+        rough = with_or_without_gear(parts, model, unknowns, known, TEMPER)
         again = _in_its_sea(sailed, rough.model, progress)
         if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
-            tracks, rough = again, with_or_without_gear(again, model, unknowns, known, TEMPER)
+            tracks, parts = again, fitted_parts(again, model)
+            rough = with_or_without_gear(parts, model, unknowns, known, TEMPER)
     progress("testing whether wind pushed the ship")
-    rough = with_or_without_wind(tracks, rough, known, TEMPER)
+    rough = with_or_without_wind(parts, rough, known, TEMPER)
     progress("testing whether the compass deviates with the heading")
-    return RoughCore(ship, tracks, rough, curve, own_deviation(tracks, rough, known, TEMPER))
+    return RoughCore(ship, tracks, rough, curve, own_deviation(parts, rough, known, TEMPER))
 
 
 def _in_its_sea(sailed: Sequence[Track], model: Model, progress: Callable[[str], None]) -> list[Track]:
@@ -243,7 +247,8 @@ def _core(rough: RoughCore, progress: Callable[[str], None], start: NoiseModel |
     noise_model = structural_noise(begun.lines, unknowns, start)
     temper = temper_of(begun.normal, unknowns)
     progress("fitting again with this noise model")
-    found = fit(tracks, begun.model, unknowns, of_ship(ship), noise_model, temper=temper, smooth=True)
+    parts = fitted_parts(tracks, begun.model)
+    found = fit(parts, begun.model, unknowns, of_ship(ship), noise_model, temper=temper, smooth=True)
     searched = (*searched_parts(ship), *([PARTS["compass"]] if rough.curve else []))
     asked = tuple(e for e in found.model.effects if type(e) in searched)
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))

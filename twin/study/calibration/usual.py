@@ -18,6 +18,7 @@ from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior, one_step_core
 from twin.study.reference.healthy import left_out_scores
 from twin.study.reference.nuisance import known_from, nuisance_unknowns, temper_of, usual_unknowns
+from twin.study.reference.reading import fitted_parts
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import structural_noise_beside
 from twin.study.reference.weather_baseline import strengths
@@ -57,10 +58,11 @@ def usual(ship: Ship, by_steps: Ship, tracks: Sequence[Track], noise_model: Nois
 
 
 def _linearised(ship: Ship, tracks: Sequence[Track]) -> tuple[tuple[Unknown, ...], list[Linear]]:
-    """All that a reference voyage may tell of the ship, and these voyages linearised about it."""
+    """All that a reference voyage may tell of the ship, and what is read of these voyages linearised about
+    it."""
     model, known = Model.of(ship), of_ship(ship)
-    unknowns = usual_unknowns(model, known)
-    return unknowns, [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
+    unknowns, parts = usual_unknowns(model, known), fitted_parts(tracks, model)
+    return unknowns, [linearise(t, fed(model, t)[0], unknowns, known) for t in parts]
 
 
 def path_errors(

@@ -15,7 +15,15 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation import form, rough, wave_induced
-from twin.study.estimation.respond import accelerations, faulty, moving, readings, respond, sailing
+from twin.study.estimation.respond import (
+    accelerations,
+    by_lateness,
+    faulty,
+    moving,
+    readings,
+    respond,
+    sailing,
+)
 from twin.study.track.track import Track
 
 
@@ -157,7 +165,8 @@ def columns(
     label -> value). `same`: columns that are known already, (N, 3) and (N, 8) by their places."""
     kept = KeptForces()
     s, acceleration = sailing(track, model, kept)
-    reading = readings(s, model)
+    late_s, prompt = model.prompt()
+    reading = readings(s, prompt)
     A: np.ndarray = np.zeros((len(track), 3, len(unknowns)), dtype)
     R: np.ndarray = np.zeros((len(track), 8, len(unknowns)), dtype)
     missing, missed = (
@@ -193,12 +202,15 @@ def columns(
         step = _step(unknown, here, fault)
         other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
         if fault:  # it changes what is read, and not how the ship moves
-            R[:, :, j] = (readings(s, other) - reading) / step
+            later_s, shown = other.prompt()
+            R[:, :, j] = (readings(s, shown) - reading) / step
+            if later_s != late_s:
+                R[:, :, j] += (later_s - late_s) / step * by_lateness(track, reading, unknown.sd)
             continue
         if unknown.owner == "core" and not model.faults:  # a right instrument shows nothing of it
             A[:, :, j] = (accelerations(track, other, kept) - acceleration) / step
             continue
-        a, r = respond(track, other, kept)
+        a, r = respond(track, other.prompt()[1], kept)
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
 
@@ -213,7 +225,8 @@ def turns(
     """Of each number of a fault that the model's instruments have (its column): (N, 8, 8) what one unit of it
     changes of the readings per unit of what they show beside the smooth motion. That motion holds a little of
     the instruments' noise: alone it would tell a fault wrongly that turns, scales or delays what they show.
-    (Of one they do not have yet: what they show beside it may be that fault's own doing.)"""
+    (Of one they do not have yet: what they show beside it may be that fault's own doing. Of how late they
+    are: `by_lateness` evens that noise out, and what they show of a moment is no slope of it.)"""
     present = {type(fault).__name__ for fault in model.faults}
     if not present.intersection(u.owner for u in unknowns):
         return {}
@@ -224,6 +237,8 @@ def turns(
         here = (at or {}).get(unknown.label)
         step = _step(unknown, here, True)
         other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
+        if other.prompt()[0] != model.prompt()[0]:
+            continue
         out[j] = ((faulty(right, other) - shown) @ undo / step).astype(np.float32)
     return out
 

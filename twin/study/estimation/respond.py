@@ -88,6 +88,12 @@ def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
     return out
 
 
+def by_lateness(track: Track, shown: np.ndarray, width_s: float) -> np.ndarray:
+    """(N, 8), in SI per second: what a little more lateness changes of the readings `shown` (N, 8), over
+    `width_s` to either side: the smooth motion holds noise of the readings, and its own slopes more of it."""
+    return (later(track, shown, width_s) - later(track, shown, -width_s)) / (2.0 * width_s)
+
+
 def _beyond(x: np.ndarray, at: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:
     """`x` (N,) at the steps `at`: between its own by straight lines, beyond its ends as it changed in the
     last step there, which turns on: by twice `turned` (N,), powers of e, in a step."""

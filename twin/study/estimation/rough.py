@@ -57,6 +57,8 @@ def _but(model: Model, effect: Effect) -> Model:
 
 def _turned(model: Model, effect: Force, side: float) -> Model:
     def moment(s: Situation) -> ForceVector:
+        if any(getattr(s, name) is None for name in effect.needs):
+            return ForceVector()
         return ForceVector(N=side * effect.lever * float(model.ship.L_pp) * effect.force(s, model.loaded).Y)
 
     return replace(model, residual=moment)

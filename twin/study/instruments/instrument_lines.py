@@ -2,9 +2,11 @@
 
 import math
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 from twin.num import READABLE, num
+from twin.physics.effect import Effect
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, effect_of
@@ -81,11 +83,12 @@ def _number(e: InstrumentEstimate) -> dict[str, Any]:
     }
 
 
-def terminal_lines(found: Instruments) -> list[str]:
-    """The whole answer, a line each."""
+def terminal_lines(found: Instruments, effects: Sequence[Effect] = ()) -> list[str]:
+    """The whole answer, a line each; of a fault that is in the ship file (`effects`) already it says so."""
+    known = {type(e).__name__: e for e in effects}
     out = []
     for fault in found.faults:
-        out += _fault(found, fault)
+        out += _fault(found, fault) + _known(found, fault, known.get(effect_of(fault) or ""))
     if not found.faults:
         out.append("No instrument disagrees with the others beyond its noise.")
     out += ["", "stream, in the middle of each voyage"]
@@ -143,6 +146,17 @@ def _fault(found: Instruments, fault: str) -> list[str]:
         )
     falls = [f"{k} {amount(a, READ[k])} -> {amount(b, READ[k])}" for k, (a, b) in found.falls[fault].items()]
     return out + ([f"  shown by the residuals of {', '.join(falls)}"] if falls else [])
+
+
+def _known(found: Instruments, fault: str, effect: Effect | None) -> list[str]:
+    """What the ship file has of the fault's numbers already."""
+    held = effect.by_readings if effect else {}
+    of = {p.name: p.unit for p in (type(effect).params() if effect else ())}
+    its = [
+        held[e.unknown.name] for e in found.estimates if e.unknown.fault == fault and e.unknown.name in held
+    ]
+    told = [f"{name} {amount(float(getattr(effect, name)), of[name])}" for name in its]
+    return [f"  in the ship file already: {', '.join(told)}"] if told else []
 
 
 def amount(value: float, unit: str) -> str:

@@ -16,6 +16,12 @@ from twin.study.track.track import Track
 
 # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 MOST_SEGMENTS = 20
+FITTED_SEGMENTS = 30  # and of all voyages that a core is fitted to (decision 0051)
+
+
+def fitted_parts(tracks: Sequence[Track], model: Model) -> list[Track]:
+    """What of these tracks a core is fitted to: an even choice of FITTED_SEGMENTS of all together."""
+    return read_parts(tracks, float(model.ship.scale("time")), FITTED_SEGMENTS)
 
 
 def read_lines(

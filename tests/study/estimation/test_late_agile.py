@@ -1,0 +1,70 @@
+"""A receiver that is late by what an agile boat needs to sail its own length."""
+
+import numpy as np
+import pytest
+
+from tests.study.conftest import DEG
+from twin.physics.effects import catalogue
+from twin.physics.effects.sensor_delay import SensorDelay
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.physics.state import Situation
+from twin.recording.voyage import Voyage
+from twin.study.estimation.fit import fit
+from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.of_effect import effect_unknowns
+from twin.study.prediction.trial import shaft_speed
+from twin.study.track.track import track
+
+STEP_S, STEPS, LATE, SEED = 0.1, 2400, 10, 3  # a receiver that shows what was so many steps ago
+DAMPING = ("X_uu", "Y_uv", "N_ur", "Y_vv", "N_uv")
+
+
+@pytest.fixture(scope="module")
+def boat():
+    return Model.of(load("usv"))
+
+
+@pytest.fixture(scope="module")
+def voyage(boat):
+    """Four minutes of rudder to either side for some seconds each, at a speed that changes; noise as of good
+    instruments."""
+    rng, turns = np.random.default_rng(SEED), float(shaft_speed(boat, float(boat.ship.scale("speed"))))
+    rudder = np.repeat(rng.choice([-0.35, -0.2, 0.0, 0.2, 0.35], STEPS), rng.integers(20, 60, STEPS))[:STEPS]
+    n = turns * np.repeat(rng.choice([0.6, 1.0, 1.2], STEPS), 130)[:STEPS]
+    rows, state = [], (0.0, 0.0, 0.3, 1.0, 0.0, 0.0)
+    for k in range(STEPS):
+        rows.append(state)
+        state = boat.step(state, Situation(delta=rudder[k], n=n[k], t=k * STEP_S), STEP_S)
+    noise = rng.normal(size=(STEPS, 6)) * [0.01, 0.01, 2e-3, 0.02, 0.02, 2e-3]
+    x, y, psi, u, v, r = (np.array(rows) + noise).T
+    over = (u + 1j * v) * np.exp(1j * np.array(rows)[:, 2])  # as a receiver has it, turned by the compass
+    late = lambda z: np.r_[np.full(LATE, z[0]), z[:-LATE]]
+    shown = late(over) * np.exp(-1j * psi)
+    columns = {
+        "north_m": late(x),
+        "east_m": late(y),
+        "heading_true_north_deg": np.mod(psi * DEG, 360.0),
+        "surge_velocity_mps": shown.real,
+        "sway_velocity_mps": shown.imag,
+        "yaw_rate_degps": r * DEG,
+        "rudder_angle_deg": rudder * DEG,
+        "propeller_rate_rpm": n * 60.0,
+    }
+    return Voyage("agile", STEP_S * np.arange(STEPS), columns, {"velocity_frame": "course"})
+
+
+@pytest.mark.parametrize(
+    ("stronger", "least_s"), [(1.0, 0.9), (1.4, 0.6)], ids=["right model", "damping two fifths too strong"]
+)
+def test_a_receiver_that_is_late_for_an_agile_boat_is_found_to_be_late(boat, voyage, stronger, least_s):
+    """Expected: what the receiver showed a second late is found to be late, although the boat turned by
+    twenty degrees meanwhile and accelerated otherwise than the model has it, which costs some of that
+    second."""
+    own = {n: stronger * float(getattr(boat.ship.derivatives, n)) for n in DAMPING}
+    model = Model.of(boat.ship.with_derivatives(**own))
+    unknowns = effect_unknowns(SensorDelay, model)
+    found = fit([track(voyage, model.ship)], model, unknowns, catalogue(), NoiseModel())
+    delay, sd = found.value[0], found.sd[0]
+    assert unknowns[0].name == "delay" and least_s < delay < 1.05 * LATE * STEP_S
+    assert 1e-3 < sd < 0.03
