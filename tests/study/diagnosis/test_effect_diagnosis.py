@@ -2,6 +2,7 @@
 nothing."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -102,6 +103,19 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     assert ("resembles RudderPlay: The rudder hangs loose") in result["sentence"] and any(
         "gap" in line for line in terminal_lines(result)
     )
+
+
+def test_what_is_named_stands_before_what_acts_like_it(diagnosed):
+    """Expected: where a cause is named it comes first; where nothing is known, what it looks like."""
+    result = diagnosed("RudderWear")
+    like = {**result["candidates"][0], "effect": "RudderPlay", "probability": 0.1}
+
+    def order(verdict):
+        lines = terminal_lines(result | {"verdict": verdict, "resembles": [like]})
+        return [line.split()[-1] for line in lines if re.fullmatch(r" +\d+ %  Rudder(Wear|Play)", line)]
+
+    assert order("missing") == ["RudderWear", "RudderPlay"]
+    assert order("unknown") == ["RudderPlay", "RudderWear"]
 
 
 @thorough

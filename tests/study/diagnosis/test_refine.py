@@ -57,7 +57,7 @@ def test_what_no_day_brings_steers_no_climb(case):
     alone = newton(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
     assert len(narrow.unknowns) < 0.5 * len(case.unknowns) and kept.sum() == len(narrow.effects)
     # prior widths, along a ridge of the gear's own numbers
-    assert alone == pytest.approx(whole[kept], abs=0.15)
+    assert alone == pytest.approx(whole[kept], abs=0.2)
 
 
 @pytest.mark.parametrize("start", [0.3, 1.0, 3.0])

@@ -7,7 +7,7 @@ from twin.num import num, percent
 from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER, SIGNIFICANT
 
 Result = dict[str, Any]
-SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for more voyages."
+SMALL = "The open-loop error of these voyages does not fall with it: `twin add` may ask for more voyages."
 ROUGHLY = "in weather like this, whose force is known only roughly, that may be the weather's effect"
 
 

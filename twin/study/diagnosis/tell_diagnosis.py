@@ -17,12 +17,13 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
     lines = [*whose(result["data_checks"]), result["sentence"], ""]
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
-    for c in result["resembles"]:
-        lines += candidate_lines(c)
-    if result["verdict"] == "unknown" and result["candidates"]:
-        lines.append("if it is one of the known effects:")
-    for c in result["candidates"]:
-        lines += candidate_lines(c) + _not_named(c, result)
+    resembling = [line for c in result["resembles"] for line in candidate_lines(c)]
+    known = [line for c in result["candidates"] for line in candidate_lines(c) + _not_named(c, result)]
+    if result["verdict"] == "missing":
+        lines += known + resembling
+    else:
+        only_if = ["if it is one of the known effects:"] if result["verdict"] == "unknown" and known else []
+        lines += resembling + only_if + known
     lines += weather_lines(result["weather"])
     nothing, unknown = (percent(result["probabilities"][k]) for k in ("nothing_missing", "unknown"))
     lines.append(

@@ -111,7 +111,8 @@ def verdict(result: dict[str, Any]) -> str:
     ratio = f"ratio {num(times[0], 2)} and {num(times[1], 2)}"
     head = f"{as_given(row['horizon_s'])} s open-loop error: {error}; {expected} ({ratio})"
     if max(times) < clearly:
-        return f"{head}: no more than expected."
+        stay = "95 % of healthy voyages stay" if "limit95" in expects else "a healthy voyage usually stays"
+        return f"{head}: no more than expected ({stay} below {num(clearly, 2)})."
     where = result["where"][:1]
     return (
         head
