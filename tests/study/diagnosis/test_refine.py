@@ -8,18 +8,18 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.bent import bends, bent_numbers
+from twin.study.diagnosis.bent import bends, bent_numbers, late_numbers
 from twin.study.diagnosis.refine import (
     DOUBTS,
     IRREGULAR,
     BestPlace,
-    about,
     best_place,
     form_share,
     newton,
     reduced_at,
     refine,
 )
+from twin.study.diagnosis.relinearised import about
 from twin.study.estimation.respond import standard
 from twin.study.reference.evidence import Hypothesis
 
@@ -58,6 +58,13 @@ def test_what_no_day_brings_steers_no_climb(case):
     assert len(narrow.unknowns) < 0.5 * len(case.unknowns) and kept.sum() == len(narrow.effects)
     # prior widths, along a ridge of the gear's own numbers
     assert alone == pytest.approx(whole[kept], abs=0.2)
+
+
+def test_of_all_numbers_those_of_one_fault_say_how_late_place_and_speed_are_shown(case):
+    late = late_numbers(case, np.arange(len(case.effects)))
+    assert {case.effects[i].label for i in late} == {
+        u.label for u in case.effects if u.owner == "SensorDelay"
+    }
 
 
 @pytest.mark.parametrize("start", [0.3, 1.0, 3.0])
@@ -101,14 +108,15 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
 
 
 def test_a_set_whose_climb_went_astray_stands_no_lower_than_its_part(case, monkeypatch):
-    """Test: a climb of one step, begun with a receiver six seconds late beside a gear that was found. Expected:
-    far below the gear alone; begun again from where that stands, about as likely as it."""
+    """Test: a climb of one step, begun with a receiver six seconds late beside a gear that was found, and none
+    tried a grid step on. Expected: far below the gear alone; begun again from where that stands, about as likely as it."""
     guess, gear = np.zeros(len(case.effects)), ("SteeringLag",)
     guess[rows(case, "SteeringLag")[:2]] = [0.5, 1.5]
     part = refine(case, gear, "usual", guess, ())[0]
     both = case.ordered((*gear, "SensorDelay"))
     guess[rows(case, "SensorDelay")] = 10.0
     monkeypatch.setattr("twin.study.diagnosis.refine.NEWTON", 1)
+    monkeypatch.setattr("twin.study.diagnosis.refine.late_numbers", lambda *_: [])
     alone = part.hypothesis.log_evidence + case.log_prior(both, "usual")
     astray, again = (best_place(case, both, "usual", guess, hoped, part) for hoped in (-np.inf, np.inf))
     assert astray.best.log_weight < alone - 50.0 < alone - 15.0 < again.best.log_weight

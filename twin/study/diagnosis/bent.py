@@ -23,6 +23,19 @@ def bent_numbers(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
     return [int(i) for i in mine if bends(case, models, case.effects[i])]
 
 
+def late_numbers(case: Case, mine: np.ndarray) -> list[int]:
+    """Of these numbers (M,) those in seconds of a fault by which place and speed over ground are late: when
+    it turned the speed goes along with it. `mine`: index."""
+    prompt = case.model.prompt()[0]
+    late = {u.owner for u in (case.effects[i] for i in mine) if _later(case, u) != prompt}
+    return [int(i) for i in mine if case.effects[i].owner in late and case.effects[i].unit == "s"]
+
+
+def _later(case: Case, unknown: Unknown) -> float:
+    other = changed(case.model, unknown, unknown.centre + unknown.sd, case.catalogue)
+    return other.prompt()[0]
+
+
 def bends(case: Case, models: Sequence[Model], unknown: Unknown) -> bool:
     """Whether so many prior widths of a number do clearly more, or less, than so many times what one does, on
     one of the voyages; `models`: on each."""

@@ -5,16 +5,16 @@ one of DOUBTS under which the voyages are most probable (no share of what the sh
 carries it: that is the hull's own force)."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.diagnosis.bent import MULTI_START, bent_numbers
+from twin.study.diagnosis.bent import MULTI_START, bent_numbers, late_numbers
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.estimation.columns import ROUGH, Unknown
-from twin.study.estimation.linear import Linear, linearise
-from twin.study.estimation.respond import respond
+from twin.study.diagnosis.relinearised import about, clipped
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.linear import Linear
 from twin.study.reference.evidence import (
     Hypothesis,
     Posterior,
@@ -124,6 +124,22 @@ def best_place(
     if all(case.catalogue[name].kind == "Lag" for name in chosen):
         for i in mine:
             top = top.or_from(case, chosen, mine, MULTI_START[-1] * np.eye(z.size)[i])
+    return _a_step_on(case, chosen, mine, top)
+
+
+def _a_step_on(case: Case, chosen: Sets, mine: np.ndarray, top: "BestPlace") -> "BestPlace":
+    """The same, or a better place where what is shown late is so by a grid step more, or less: what it shows
+    is read at the nearest step (`when_true`), and seems less likely on the way from one to the next."""
+    if not (late := late_numbers(case, mine)):
+        return top
+    step = max(t.h for t in case.tracks) / np.array([case.effects[i].sd for i in late])
+    before = None
+    while before is not top:
+        before = top
+        for side in (1.0, -1.0):
+            far = before.at.copy()
+            far[late] += side * step
+            top = top.or_from(case, chosen, mine, far)
     return top
 
 
@@ -256,37 +272,6 @@ def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypo
     daily = {u.owner for u in case.effects if u.label in case.nuisance.daily}
     left = [tuple(n for n in chosen if n != name) for name in chosen if name in daily]
     return [h for rest in left for h in _refined(case, rest, reduced)]
-
-
-def clipped(case: Case, z: np.ndarray) -> np.ndarray:
-    """Parameters (Q,) kept inside their boxes, in prior widths."""
-    lo = np.array([(u.lo - u.centre) / u.sd for u in case.effects])
-    hi = np.array([(u.hi - u.centre) / u.sd for u in case.effects])
-    return np.clip(z, lo, hi)
-
-
-def about(
-    case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]
-) -> tuple[list[Model], list[Linear]]:
-    """The model with the parameters `mine` (M,) at z (Q,) on each voyage, and the tracks linearised about it
-    (columns of other unknowns than `fresh` stay what they were)."""
-    models = [case.at(mine, z, line.track) for line in case.lines]
-    at = {case.effects[i].label: case.effects[i].centre + case.effects[i].sd * z[i] for i in mine}
-    column = {u.label: i for i, u in enumerate(case.unknowns)}
-    fresh = [u for u in fresh if u.owner != ROUGH]  # what is known roughly does not change with what is asked
-    place = [column[u.label] for u in fresh]
-    lines = []
-    for line, model in zip(case.lines, models, strict=True):
-        there = Model(case.linearised.ship, model.effects)
-        here, _ = there.without_inputs(line.track.missing())
-        new = linearise(line.shown, here, fresh, case.catalogue, at)
-        A, R = line.A.copy(), line.R.copy()
-        A[:, :, place], R[:, :, place] = new.A, new.R
-        sure = line.model.but(*(flow for flow in here.flows if flow.stream))
-        moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
-        turns = line.turns | {place[j]: turn for j, turn in new.turns.items()}
-        lines.append(replace(new, A=A, R=R, turns=turns, doubted=moved, slack=line.slack, busy=line.busy))
-    return models, lines
 
 
 def standing(case: Case, found: Found, fresh: Sequence[Unknown] = ()) -> tuple[list[Linear], np.ndarray]:
