@@ -13,7 +13,7 @@ import pytest
 
 import twin
 from tests import command_lines
-from tests.thorough import one_of
+from tests.thorough import one_of, thorough
 from twin.physics import ship as ships
 from twin.physics.ship_pair import tidy
 from twin.recording.read import read_voyage
@@ -63,7 +63,7 @@ def whole(folder, *ours):
     return True
 
 
-@pytest.mark.parametrize("verb", one_of(VERBS, 2))
+@pytest.mark.parametrize("verb", one_of(VERBS))
 def test_a_kill_at_any_step_leaves_the_old_ship_or_the_new_and_the_next_writer_tidies(verb, folder, tmp_path):
     """Test: real SIGKILL before each opening, renaming and removing of a file of the ship. Expected: what is
     there loads and is the old or the new ship; after the next write no file is there that nobody names."""
@@ -115,6 +115,7 @@ def test_a_writer_tidies_nothing_while_another_writes_nor_what_another_ship_file
     assert files(folder) == sorted([own.name, "mine.toml", *VOYAGES])
 
 
+@thorough
 def test_what_a_killed_worker_of_the_studio_left_is_gone_at_the_next_look(folder, monkeypatch):
     """Test: the worker of a calibration is killed between the arrays and the ship file. Expected: the arrays
     are there and no ship; once the studio looks at its jobs again, neither, and the job is said to have died."""

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.thorough import one_of
 from twin.errors import SettingsError, TwinError
 from twin.live.keelson.endpoint import check
 from twin.live.keelson.zenoh_config import BusSettings, configuration
@@ -99,7 +100,7 @@ STRANGE = (
 )
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", one_of(TEXTS, 5))
 def test_F1_the_service_opens_with_any_text_or_says_in_one_line_why_not(name, tmp_path, monkeypatch):
     """Test: every setting that is a text, with texts that are no such thing. Expected: it ticks, or a
     TwinError of one line."""

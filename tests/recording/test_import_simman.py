@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.thorough import one_of
 from twin.physics.ship import load
 from twin.recording.checks import run_checks
 from twin.recording.map_file import read_map
@@ -98,7 +99,7 @@ TRAPS = {
 }
 
 
-@pytest.mark.parametrize("trap", TRAPS)
+@pytest.mark.parametrize("trap", one_of(TRAPS, 3))
 def test_the_trap_left_in_the_map_is_named_in_every_file(trap):
     who, by, check, words = TRAPS[trap]
     for path in files(who):

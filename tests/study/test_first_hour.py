@@ -10,6 +10,7 @@ import pytest
 
 import bench.cli
 import twin.cli
+from tests.thorough import thorough
 from twin.physics.ship import load
 
 PAGE = Path(__file__).parents[2] / "docs" / "tutorials" / "first-hour.md"
@@ -17,6 +18,8 @@ COMMANDS = [
     line for block in re.findall(r"```sh\n(.*?)```", PAGE.read_text(), re.S) for line in block.splitlines()
 ]
 PROGRAMS = {"twin": twin.cli.main, "twin-bench": bench.cli.main}
+
+pytestmark = thorough
 
 
 @pytest.fixture(scope="module")

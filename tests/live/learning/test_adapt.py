@@ -7,6 +7,7 @@ from math import isfinite, sin
 
 import pytest
 
+from tests.thorough import thorough
 from twin.live.learning.adapt import A_MAX, Adaptation
 from twin.live.learning.learned_force import LearnedForce, scale_of
 from twin.live.learning.residual import bundled, load
@@ -167,6 +168,7 @@ def test_M12_numbers_of_another_network_are_left_out(kvlcc2, tmp_path):
     assert "another ship or network" in adaptation.notes[0]
 
 
+@thorough
 def test_it_learns_from_a_ship_whose_rudder_is_weaker_than_the_model_thinks(kvlcc2, make_bridge):
     """Test: a rudder of 80 % in a zigzag, perfect instruments. Expected: the yaw error falls, the
     correction is small and named."""

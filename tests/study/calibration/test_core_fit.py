@@ -232,6 +232,7 @@ def test_a_ship_whose_antenna_is_where_her_file_has_it_gets_none(calibrated):
     assert said["antenna"] == {} and not ship.effects
 
 
+@thorough
 def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_does_that_did_not(
     calibrated, tmp_path
 ):

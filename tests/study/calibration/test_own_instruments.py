@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.study.conftest import seldom
+from tests.thorough import thorough
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import fitted_core
@@ -49,6 +50,7 @@ def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
     assert [set(v) for v in kept] == 3 * [{"voyage", "value", "sd", "log_bayes_factor"}]
 
 
+@thorough
 def test_a_voyage_in_a_stream_with_that_receiver_has_no_false_instrument(calibrated, voyages):
     result = diagnose([smoothed(voyages["Current"])], calibrated.ship).result
     suspected = {"SensorDelay", "AntennaOffset", "ReceiverSmoothing", "HeadingLag"}

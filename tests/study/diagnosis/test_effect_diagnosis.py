@@ -69,6 +69,7 @@ def test_the_error_falls_on_parts_not_used_for_the_fit(monday):
     assert 0.0 < first["error_floor"] < first["error_without"]
 
 
+@thorough
 def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
     both = diagnose([read_voyage(MONDAY), read_voyage(TUESDAY)], tanker).result
     assert both["missing"] == ["HullFouling"]
@@ -169,6 +170,7 @@ def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, 
     assert "nothing: 59 s" in said and "ship lengths" in said
 
 
+@thorough
 def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, voyages):
     news = diagnose([voyages["Wind"]], tanker).result
     assert (news["missing"], news["as_on_references"]) == (["Wind"], []), "\n".join(terminal_lines(news))

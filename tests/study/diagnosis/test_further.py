@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tests.study.conftest import voyage
+from tests.thorough import thorough
 from twin.physics.effects import find
 from twin.study.diagnosis import further, sentences
 from twin.study.diagnosis.answer import answer
@@ -78,6 +79,7 @@ def test_the_facts_are_those_of_the_whole(whole, half):
     assert facts.left.error < facts.error_nothing
 
 
+@thorough
 def test_a_single_cause_stays_single_and_nothing_is_asked_twice(asked):
     found, said = asked("HeadingBias")
     assert (found["missing"], found["further"]) == (["HeadingBias"], [])

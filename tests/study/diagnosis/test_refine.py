@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.bent import bends, bent_numbers, late_numbers
@@ -93,6 +94,7 @@ def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
     assert np.isfinite(end).all()
 
 
+@thorough
 def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     """From the linear guess, which sees the delay alone, and from far out: no place is more probable than
     where it is said to stand."""

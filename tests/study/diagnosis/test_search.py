@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.physics.effects import catalogue
 from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS
 from twin.study.diagnosis.criteria import SURE
@@ -96,6 +97,7 @@ def test_weather_stands_beside_any_two_causes_and_takes_no_place(case):
     assert held.parts(four) == [day, *(case.ordered((*day, name)) for name in case.causes(four))]
 
 
+@thorough
 def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(case_of):
     held = book(case_of("nothing"))
     while chosen := held.next():

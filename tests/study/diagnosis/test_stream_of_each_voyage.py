@@ -36,6 +36,7 @@ def test_a_healthy_ship_on_two_days_lacks_nothing_but_each_days_stream(sailed, k
     assert said["path"]["error_without"] < 1.5 * said["path"]["error_floor"]
 
 
+@thorough
 def test_what_is_wrong_with_the_ship_is_one_number_on_both_days(sailed, kvlcc2):
     said = diagnose(sailed(RudderOffset(offset=0.05)), kvlcc2).result
     assert "RudderOffset" in said["missing"]

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin import cli
 from twin.physics.effects import catalogue
 from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
@@ -66,6 +67,7 @@ def test_what_else_the_ship_file_held_stays_as_it_was(ordered):
     assert ship.effects[0].bias == GYRO
 
 
+@thorough
 def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_change(ordered, tmp_path, capsys):
     paths, hidden, out, _ = ordered
     answer = tmp_path / "answer.json"
