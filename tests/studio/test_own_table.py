@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from tests.studio.by_mouse import go, opened, shown
-from tests.thorough import thorough
 from twin.commands.story import MONDAY
 from twin.recording.read import read_voyage
 
@@ -135,7 +134,6 @@ def test_a_unit_is_chosen_anew_in_the_table_of_the_map(page, tables):
         assert 'yaw_rate_degps = { column = "ROT", unit = "deg/s" }' in file.read()
 
 
-@thorough
 def test_two_windows_do_not_write_over_each_other(page, tables):
     """Test: the map is changed in another window, or by an editor, and then in this one. Expected: one line, the
     other's map is as it was; after another look this window's change is taken."""

@@ -6,6 +6,7 @@ import pytest
 from bench.boats.actuator_questions import from_sheet
 from twin.physics.effects import find
 from twin.physics.model import Model
+from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.manoeuvres import (
     MANOEUVRES,
     HelmOrder,
@@ -33,6 +34,14 @@ def test_the_ship_sails_every_manoeuvre(case, name):
     t = sail(case, case.model, MANOEUVRES[name])
     assert np.isfinite(t.state).all()
     assert t.state[:, 3].max() < 2.0 * float(case.model.ship.U_0)
+
+
+def test_a_ship_with_wind_in_its_file_sails_where_none_was_recorded(tanker, voyages):
+    calm = voyages["nothing"]
+    columns = {name: x for name, x in calm.columns.items() if "wind" not in name}
+    windy = tanker.with_effects(find("Wind").plausible(tanker))
+    windless = assemble([calm.with_rows(calm.time_s, columns)], windy)
+    assert sorted(sailed(windless, windless.model)) == sorted(OF_ANY_SHIP)
 
 
 @pytest.mark.parametrize("name", OF_ANY_SHIP)

@@ -138,9 +138,10 @@ MANOEUVRES: dict[str, Manoeuvre] = {
 
 
 def sail(case: Case, model: Model, manoeuvre: Manoeuvre) -> Track:
-    """The track of a manoeuvre that the model sails in the weather of the case's first track; NaN from where
-    it runs away."""
+    """The track of a manoeuvre that the model sails in the weather of the case's first track, without what
+    that did not record; NaN from where it runs away."""
     like = case.tracks[0]
+    model, _ = model.without_inputs(like.missing())
     parts, speed = bool(model.ship.actuators), float(np.median(like.state[:, 3]))
     h = float(model.ship.scale("time")) / STEPS_PER_LENGTH
     if parts:  # what each gets in turn must fit into the lengths that are sailed

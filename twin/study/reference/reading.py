@@ -16,7 +16,7 @@ from twin.study.track.track import Track
 
 # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 MOST_SEGMENTS = 20
-FITTED_SEGMENTS = 30  # and of all voyages that a core is fitted to (decision 0051)
+FITTED_SEGMENTS = 60  # and of all voyages that a core is fitted to (decision 0051)
 
 
 def fitted_parts(tracks: Sequence[Track], model: Model) -> list[Track]:

@@ -20,7 +20,7 @@ from twin.study.estimation.linear import Linear
 from twin.study.reference.path_error import of_ship
 from twin.study.reference.structural_table import read_from
 
-MOST_SEGMENTS = 20
+MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
 BOUNDS = {
     "share": (0.01, 0.5),
