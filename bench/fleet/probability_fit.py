@@ -15,7 +15,7 @@ from scipy.optimize import minimize
 from bench.fleet.answer_score import BY_NOW, Row, causes, posterior, share
 from bench.fleet.decided_again import decided_again
 from bench.fleet.fleet_page import lines
-from twin.study.diagnosis.calibrated_probability import FACTS, log_odds, unnamed
+from twin.study.diagnosis.calibrated_probability import FACTS, log_odds, posterior_of_unknown, unnamed
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts
 
@@ -67,8 +67,8 @@ def _of_nothing(row: Row) -> list[FactsAndTruth]:
 
 
 def _of_unknown(row: Row) -> list[FactsAndTruth]:
-    verdict = decided_again(row, row["read"]).verdict
-    return [([log_odds(row["read"].unknown), float(verdict == "unknown")], row["kind"] == "outside")]
+    verdict, posterior = decided_again(row, row["read"]).verdict, posterior_of_unknown(row["read"])
+    return [([log_odds(posterior), float(verdict == "unknown")], row["kind"] == "outside")]
 
 
 @dataclass(frozen=True)

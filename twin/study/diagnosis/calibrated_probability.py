@@ -34,23 +34,24 @@ def _left_little(f: Facts, c: Cause, d: Decision) -> float:
 
 
 FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a cause likelier as it grows
-    "log_odds": lambda f, c, d: log_odds(c.probability),  # a third of the log odds of its posterior
+    # a third of the log odds of the posterior that it is there, and lasts
+    "log_odds": lambda f, c, d: log_odds(c.probability * f.lasts(c)),
     "clearness": _clearness,  # log of one and its significance
     "left_little": _left_little,  # log of the expected error over what the explanation leaves
     "named": lambda f, c, d: float(c.effect in d.missing),  # whether the table of rules names it
     "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
 OF_CAUSE = {  # of the explanation
-    "constant": -4.38,
-    "log_odds": 0.54,
-    "clearness": 0.91,
-    "left_little": 0.05,
-    "named": 1.13,
-    "of_known_form": 1.87,
+    "constant": -4.06,
+    "log_odds": 0.7,
+    "clearness": 0.79,
+    "left_little": 0.04,
+    "named": 0.99,
+    "of_known_form": 1.73,
 }
 OF_CAUSE_BESIDE = {"constant": -1.3, "log_odds": 0.96}  # the explanation does without it
 OF_NOTHING = {"constant": -1.13, "log_odds": 1.22, "unnamed": 1.22}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -1.24, "log_odds": 0.48, "verdict": 1.89}  # what is there has no name
+OF_UNKNOWN = {"constant": -0.95, "log_odds": 0.68, "verdict": 1.22}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
@@ -76,7 +77,15 @@ def unnamed(f: Facts, d: Decision) -> float:
 
 def of_unknown(f: Facts, d: Decision) -> float:
     """How often what was there is in no catalogue. [1]"""
-    return _share(OF_UNKNOWN, log_odds=log_odds(f.unknown), verdict=float(d.verdict == "unknown"))
+    posterior = posterior_of_unknown(f)
+    return _share(OF_UNKNOWN, log_odds=log_odds(posterior), verdict=float(d.verdict == "unknown"))
+
+
+def posterior_of_unknown(f: Facts) -> float:
+    """Posterior probability that something is there without a name: of no known form, or what acts like a
+    cause of the explanation and does not last. [1]"""
+    fitful = (c.probability * (1.0 - f.lasts(c)) for c in f.causes if c.in_explanation)
+    return max(f.unknown, *fitful, 0.0)
 
 
 def _share(weights: Mapping[str, float], **facts: float) -> float:

@@ -2,7 +2,7 @@
 decided."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.irregular import comes_and_goes
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
+from twin.study.diagnosis.overtime import varying
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.rarity import deviations
@@ -63,7 +64,14 @@ def consider(
         ]
     )
     like = {name: alike(case, weighed, name) for name in named}
-    causes = [_cause(case, weighed, found, explanation, name, w, like[name], asked) for name in named]
+    varies = varying(case, found[explanation or w.best.effects])
+    causes = [
+        replace(
+            _cause(case, weighed, found, explanation, name, w, like[name], asked),
+            varies=varies.get(name, 0.0),
+        )
+        for name in named
+    ]
     weather = [
         _cause(case, weighed, found, explanation, name, w, ()) for name, p in w.weather.items() if p >= SURE
     ]

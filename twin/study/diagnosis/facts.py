@@ -31,6 +31,8 @@ class Cause:
     # share of the reference voyages whose kinematics are as far from the others' as these voyages' are from
     # theirs; None: kinematics cannot tell its size from none, or were not asked [1]
     reached: float | None = None
+    # how probable is it that its size varies within a voyage, although it belongs to the ship? [1]
+    varies: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,11 @@ class Facts:
     # how probable is it that the force of the explanation's causes that belong to the ship comes and goes,
     # and does not last? [1]
     comes_and_goes: float = 0.0
+
+    def lasts(self, c: Cause) -> float:
+        """How probable it is that a cause that is there acts all the time, as what belongs to the ship does.
+        [1]"""
+        return 1.0 - max(self.comes_and_goes, c.varies) if c.belongs_to == "ship" else 1.0
 
     def as_json(self) -> dict[str, Any]:
         """As JSON has them."""

@@ -84,9 +84,10 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
     ),
     CauseRule(
         FITFUL,
-        lambda f, c: c.belongs_to == "ship" and f.comes_and_goes >= criteria.CERTAIN,
+        lambda f, c: 1.0 - f.lasts(c) >= criteria.CERTAIN,
         "it belongs to the ship, and with a probability of "
-        f"{percent(criteria.CERTAIN)} or more the force of such causes of the explanation comes and goes",
+        f"{percent(criteria.CERTAIN)} or more the force of such causes of the explanation comes and goes, or "
+        "its size is another in each part of a voyage",
     ),
 )
 SECOND_NOT_SURE = "second_not_sure"  # of what might be named were it the only one

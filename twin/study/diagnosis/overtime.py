@@ -1,17 +1,22 @@
-"""Whether a named effect was there all the time: how strong each part of the voyages says it is, as a share
-of what all say together.
+"""Whether an effect was there all the time: how strong each part of the voyages says it is, as a share of
+what all say together.
 
 A rope in the propeller, a ballast tank that was filled, a gear that failed under way: the effect is named
 rightly, and its size over the whole voyage is an average that it never had. Each part has its own core and
 instruments (the reference voyages' knowledge of them), so a part in which the effect does not show says
-little and does so with a wide interval."""
+little and does so with a wide interval.
+
+What belongs to the ship is the same all voyage, between one and the next it may have changed. So a drogue
+that was out for a while is no growth on the hull, although that is how much speed it took."""
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from scipy.special import expit
 
-from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.case import ODDS, ODDS_UNNAMED, Case
+from twin.study.diagnosis.irregular import SHARES
 from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import innovate
 from twin.study.reference.evidence import reduce
@@ -55,3 +60,31 @@ def changes(parts: Sequence[dict[str, Any]]) -> bool:
     share, sd = (np.array([p[key] for p in parts]) for key in ("share", "sd"))
     apart = np.abs(share[:, None] - share) - FORM
     return bool((apart > DIFFERENT_SD * np.hypot(sd[:, None], sd)).any())
+
+
+def varying(case: Case, found: Found) -> dict[str, float]:
+    """How probable it is [1], of each effect of the hypothesis that belongs to the ship, that its size is
+    another in each part of a voyage, so that it has no name, rather than one."""
+    names = [n for n in found.hypothesis.effects if case.catalogue[n].belongs_to == "ship"]
+    if not names:
+        return {}
+    parts = over_time(case, found, found.hypothesis.effects)
+    log_odds = np.log(ODDS_UNNAMED / ODDS)
+    return {name: float(expit(log_bayes_factor(parts[name]) + log_odds)) for name in names}
+
+
+def log_bayes_factor(parts: Sequence[dict[str, Any]]) -> float:
+    """How much likelier the sizes of these parts are when they scatter within a voyage, by the likeliest of
+    SHARES, than when each voyage has one, which its form tells as far as FORM [log Bayes factor]."""
+
+    def evidence(scatter: float) -> float:
+        out = 0.0
+        for voyage in {p["voyage"] for p in parts}:
+            share, sd = (np.array([p[k] for p in parts if p["voyage"] == voyage]) for k in ("share", "sd"))
+            weight = 1.0 / (sd**2 + FORM**2 + scatter**2)
+            off = share - np.average(share, weights=weight)
+            # the voyage's own size integrated out
+            out += 0.5 * float(np.log(weight).sum() - np.log(weight.sum()) - (weight * off**2).sum())
+        return out
+
+    return max(evidence(share) for share in SHARES) - evidence(0.0)
