@@ -6,6 +6,8 @@ import sys
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
+
 COLUMNS = ("north_m", "east_m", "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps",
            "yaw_rate_degps", "rudder_angle_deg", "propeller_rate_rpm")  # fmt: skip
 CHILD = """
@@ -43,7 +45,11 @@ def written(path, separator, point):
 
 
 @pytest.mark.parametrize(
-    "separator, point", ((",", "."), (";", ",")), ids=("the quick reader", "the careful one")
+    "separator, point",
+    [
+        pytest.param(",", ".", id="the quick reader"),
+        pytest.param(";", ",", id="the careful one", marks=thorough),
+    ],
 )
 def test_R15_a_table_of_60_megabytes_takes_no_more_than_four_times_its_size(tmp_path, separator, point):
     """Test: 60 MB of CSV, with points and with decimal commas, read by a process that tells its own peak.

@@ -163,6 +163,7 @@ def by_steps(voyages, ship, folder):
     return load(folder / "better.toml"), made.result
 
 
+@thorough
 def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_the_ship(voyages, tmp_path):
     """64 m ahead of where the ship file has it, as if the receiver were never told its length; predictions
     are better for it."""

@@ -183,6 +183,7 @@ def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, 
     ) in terminal_lines(known)
 
 
+@thorough
 def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
     asked, *references = (voyages[name].between(0.0, 700.0) for name in ("HeadingBias", "calm", "calm too"))
     result = diagnose([asked], tanker, references).result

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.thorough import thorough
 from twin.physics.effects import find, of_ship
 from twin.physics.model import Model
 from twin.study.diagnosis.effect_diagnosis import diagnose
@@ -13,7 +14,7 @@ from twin.study.reference.nuisance import HEALTHY_WIDTHS, of_no_calibration
 RATE = "yaw_rate_degps"
 
 
-@pytest.mark.parametrize("scale, named", [(-0.2, ["GyroScale"]), (-0.01, [])])
+@pytest.mark.parametrize("scale, named", [(-0.2, ["GyroScale"]), pytest.param(-0.01, [], marks=thorough)])
 def test_a_scale_is_named_where_it_is_more_than_gyros_usually_have(tanker, voyages, scale, named):
     healthy = voyages["nothing"]
     shown = replace(healthy, columns=healthy.columns | {RATE: (1.0 + scale) * healthy.columns[RATE]})

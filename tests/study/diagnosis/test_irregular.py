@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.diagnosis.irregular import comes_and_goes, log_bayes_factor
 from twin.study.diagnosis.refine import refine
 
@@ -45,9 +44,3 @@ def test_only_of_what_belongs_to_the_ship_it_is_asked_whether_it_lasts(case_of, 
     case = case_of(name)
     assert log_bayes_factor(case, found(case, cause)) is None
     assert comes_and_goes(case, found(case, cause)) == 0.0
-
-
-def test_a_rudder_that_wore_between_two_voyages_is_named(tanker, voyages):
-    """Half of the time it was not there: that is no force that comes and goes as the ship sails."""
-    result = diagnose([voyages["nothing"], voyages["RudderWear"]], tanker).result
-    assert result["missing"] == ["RudderWear"] and result["facts"]["comes_and_goes"] < 0.5

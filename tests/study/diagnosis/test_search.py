@@ -54,6 +54,7 @@ def in_turn(case):
     return weighed(PAIR[:1], PAIR[1:]), weighed(PAIR[1:], PAIR[:1])
 
 
+@thorough
 def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_judged_first(in_turn):
     (_, worn, worn_first), (_, slow, slow_first) = in_turn
     for both in (worn_first, slow_first):

@@ -13,6 +13,7 @@ import pytest
 
 import twin
 from tests.study.fleet.rows import copied
+from tests.thorough import thorough
 from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
@@ -69,6 +70,7 @@ def asked(finished, yard):
     return twin.fleet(yard / "fleet.toml", finished[1]), finished[1]
 
 
+@thorough
 def test_a_run_that_is_killed_goes_on_where_it_stopped(finished):
     """Expected: what was answered is not asked again, but the voyage without a file; every row is there
     once."""

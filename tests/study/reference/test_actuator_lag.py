@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bench.small_boats import sailed, ship_of
+from tests.thorough import thorough
 from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load, save
@@ -106,6 +107,7 @@ def calibrated(tmp_path_factory):
     return made.result | {"held_out_is": "", "doubts": [], "data_checks": []}, load(out)
 
 
+@thorough
 def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated):
     said, boat = calibrated
     lags = {type(e).__name__: e for e in boat.effects}
