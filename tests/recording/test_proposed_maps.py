@@ -170,6 +170,8 @@ def test_whose_a_column_is_and_what(name, values, channel):
 
 def test_a_rate_is_in_no_knots_and_a_speed_in_no_turns():
     assert guess("Propeller speed (rpm)").channel == "propeller_rate_rpm"
+    assert guess("app_wind_mps").channel == "apparent_wind_speed_mps" and guess("wind_s") is None
+    assert guess("wind (deg)").channel == "true_wind_direction_deg"
     assert guess("Speed (kn)").channel == "speed_over_ground_mps" and guess("rate of turn (kn)") is None
 
 

@@ -207,6 +207,9 @@ RULES: tuple[GuessRule, ...] = (
 )
 
 
+HALVES_OF_WIND = {"speed": "true_wind_speed_mps", "direction": "true_wind_direction_deg"}
+
+
 class Guess(NamedTuple):
     """A channel ("time" among them), the unit the name states ("" when none), how many words spoke for it."""
 
@@ -221,6 +224,7 @@ def guess(name: str, stated: str = "", group: str = "") -> Guess | None:
     words, unit = words_of(name)
     unit, own = unit or stated, frozenset(words)
     there = own | frozenset(words_of(group)[0])
+    there |= _half_of_wind(there, unit)
     if there & (WANTED | DERIVED) or not words:
         return None
     best: Guess | None = None
@@ -231,6 +235,13 @@ def guess(name: str, stated: str = "", group: str = "") -> Guess | None:
             if best is None or score > best.score:
                 best = Guess(rule.channel, unit, score)
     return best
+
+
+def _half_of_wind(words: frozenset[str], unit: str) -> frozenset[str]:
+    """Of a wind whose name leaves it open, the word that its unit says: `app_wind_mps` is a speed."""
+    if "wind" not in words or words & {"speed", "velocity", "direction", "angle"}:
+        return frozenset()
+    return frozenset(word for word, channel in HALVES_OF_WIND.items() if unit and can_be(channel, unit))
 
 
 def can_be(channel: str, unit: str) -> bool:
