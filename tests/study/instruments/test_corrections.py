@@ -2,6 +2,8 @@
 
 from types import SimpleNamespace
 
+import pytest
+
 from twin.physics.ship import load
 from twin.study.instruments.corrections import corrected
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
@@ -34,3 +36,11 @@ def test_a_number_that_no_ship_can_have_is_left_out_and_the_others_are_written()
 def test_an_age_that_no_effect_holds_is_told_as_left_out():
     ship, left = corrected(load("kvlcc2"), found_of(log_delay=1.5))
     assert ship.effects == load("kvlcc2").effects and [e.unknown.name for e in left] == ["log_delay"]
+
+
+@pytest.mark.parametrize("value, kept", [(0.085, True), (0.11, False)])
+def test_what_the_ship_file_has_within_what_one_voyage_tells_stays_for_it_may_rest_on_more(value, kept):
+    ship, _ = corrected(load("kvlcc2"), found_of(log_scale=0.08))
+    again, left = corrected(ship, found_of(log_scale=value))
+    (effect,) = (e for e in again.effects if type(e).__name__ == "SpeedLogScale")
+    assert effect.scale == (0.08 if kept else value) and not left

@@ -12,7 +12,7 @@ from twin.physics.effect import Effect, SensorFault
 from twin.physics.effects import catalogue
 from twin.physics.ship import Ship
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
-from twin.study.instruments.instrument_lines import amount
+from twin.study.instruments.instrument_lines import amount, as_filed
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 from twin.study.reference.derivatives import noted
 
@@ -24,13 +24,17 @@ OFFSETS = {
 
 
 def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
-    """The ship with the faults that were seen as effects of its own; and the seen numbers that no effect of
-    the catalogue holds, or that lie outside the box of theirs."""
+    """The ship with the faults that were seen as effects of its own (those of which its file has what the
+    readings tell as they are: it may rest on more voyages); and the seen numbers that no effect of the
+    catalogue holds, or that lie outside the box of theirs."""
     seen = _seen(found)
     known, names = effects_of_readings(), [r.name for r in found.readings]
     left = [e for e in seen if e.unknown.name not in known]
+    filed = {type(e): e for e in ship.effects}
     for effect in dict.fromkeys(known[e.unknown.name] for e in seen if e not in left):
         its = [e for e in seen if known.get(e.unknown.name) is effect]
+        if effect in filed and as_filed(filed[effect], its):
+            continue
         told = {e.unknown.name: (e.value, e.sd) for e in its}
         try:
             ship = with_numbers(ship, told, all(found.own), names)

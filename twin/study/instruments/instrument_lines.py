@@ -5,9 +5,12 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from twin.num import READABLE, num
-from twin.physics.effect import Effect
-from twin.study.instruments.findings import InstrumentEstimate, Instruments
+from twin.physics.effect import Effect, SensorFault
+from twin.study.estimation.rarity import deviations
+from twin.study.instruments.findings import P95, InstrumentEstimate, Instruments
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, effect_of
 
@@ -156,7 +159,18 @@ def _known(found: Instruments, fault: str, effect: Effect | None) -> list[str]:
         held[e.unknown.name] for e in found.estimates if e.unknown.fault == fault and e.unknown.name in held
     ]
     told = [f"{name} {amount(float(getattr(effect, name)), of[name])}" for name in its]
-    return [f"  in the ship file already: {', '.join(told)}"] if told else []
+    agree = effect is not None and as_filed(effect, [e for e in found.estimates if e.unknown.fault == fault])
+    stays = " (within the 95 % of these readings: left as it is)" * agree
+    return [f"  in the ship file already: {', '.join(told)}{stays}"] if told else []
+
+
+def as_filed(effect: Effect, estimates: Sequence[InstrumentEstimate]) -> bool:
+    """Whether what an effect of the ship file has of these numbers lies within the 95 % of what the readings
+    tell of all of them together."""
+    held = effect.by_readings if isinstance(effect, SensorFault) else {}
+    its = [e for e in estimates if e.unknown.name in held]
+    off = np.array([(e.value - float(getattr(effect, held[e.unknown.name]))) / e.sd for e in its])
+    return len(its) > 0 and deviations(off, np.eye(len(its))) <= P95
 
 
 def amount(value: float, unit: str) -> str:
