@@ -1,4 +1,5 @@
-"""`python -m bench.fleet VERB`: run, table, fit, keep, add, together, peer, prior, variation, proofs."""
+"""`python -m bench.fleet VERB`: run, table, fit, keep, add, together, partly, peer, prior, variation,
+proofs."""
 
 import argparse
 import sys
@@ -9,6 +10,7 @@ from bench.fleet import (
     false_proofs,
     fleet_page,
     keep_answers,
+    part_of_a_voyage,
     prior_fit,
     several_voyages,
     sparse_peer,
@@ -30,6 +32,7 @@ def main() -> int:
         "keep": keep_answers,
         "add": addition_proof,
         "together": several_voyages,
+        "partly": part_of_a_voyage,
         "peer": sparse_peer,
         "prior": prior_fit,
         "variation": variation_fit,

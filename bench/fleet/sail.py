@@ -38,6 +38,7 @@ KEPT = (
     "wind_from",
 )
 FINEST = 0.5  # [s] longest step
+ALL_VOYAGE = (0.0, 1.0)
 
 
 def step_of(ship: RandomShip) -> float:
@@ -53,9 +54,12 @@ def sail(
     seed: int,
     flaws: Flaws | None = None,
     heading: float | None = None,
+    acting: tuple[float, float] = ALL_VOYAGE,
 ) -> dict[str, np.ndarray]:
-    """The truth of a voyage, a row a step."""
-    f, p, d, hull = flaws or Flaws(), ship.p, ship.drive, ship.hull
+    """The truth of a voyage, a row a step. `acting`: from which to which share of it forces that are wrong
+    act."""
+    wrong, healthy, p, d, hull = flaws or Flaws(), Flaws(), ship.p, ship.drive, ship.hull
+    f = wrong
     rng = np.random.default_rng([seed, 11])
     dt = step_of(ship)
     steps = int(duration_s / dt)
@@ -81,6 +85,7 @@ def sail(
     out = np.empty((steps, len(KEPT)))
     for i in range(steps):
         t = i * dt
+        f = wrong if acting[0] <= i / steps < acting[1] else healthy
         if f.flood:
             x_G = p.x_G + f.x_G + f.flood * t
         c, s = cos(psi), sin(psi)

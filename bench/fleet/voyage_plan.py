@@ -98,12 +98,13 @@ def can_show(ship: RandomShip, name: str) -> bool:
     }.get(name, kit.has_log if name.startswith("SpeedLog") else True)
 
 
-def sailed(ship: RandomShip, case: FleetCase) -> SailedCase:
+def sailed(ship: RandomShip, case: FleetCase, acting: tuple[float, float] = sail.ALL_VOYAGE) -> SailedCase:
+    """The voyage of a case; `acting`: from which to which share of it forces that are hidden act."""
     rng, day, changes = changed(ship, case)
     flaws = hidden_causes.Flaws()
     for change in changes.values():
         flaws, day = replace(flaws, **change.flaws), replace(day, **change.weather)
-    return _on_a_plan(ship, case.key, day, flaws, rng)
+    return _on_a_plan(ship, case.key, day, flaws, rng, acting)
 
 
 def changed(
@@ -135,9 +136,10 @@ def _on_a_plan(
     day: fleet_weather.FleetWeather,
     flaws: hidden_causes.Flaws,
     rng: np.random.Generator,
+    acting: tuple[float, float] = sail.ALL_VOYAGE,
 ) -> SailedCase:
     plan_name = str(rng.choice(["mixed", "mixed", "zigzag", "courses", "speeds", "circle"]))
-    return _sailed(ship, name, plan_name, day, flaws, rng)
+    return _sailed(ship, name, plan_name, day, flaws, rng, acting)
 
 
 def _sailed(
@@ -147,10 +149,11 @@ def _sailed(
     day: fleet_weather.FleetWeather,
     flaws: hidden_causes.Flaws,
     rng: np.random.Generator,
+    acting: tuple[float, float] = sail.ALL_VOYAGE,
 ) -> SailedCase:
     lasts = np.clip(ship.p.unit_s * rng.uniform(*LENGTHS), 60 * MINUTES[0], 60 * MINUTES[1])
     seed = int(rng.integers(2**31))
-    true = sail.sail(ship, PLANS[plan_name](rng), day, float(lasts), seed, flaws)
+    true = sail.sail(ship, PLANS[plan_name](rng), day, float(lasts), seed, flaws, acting=acting)
     good = np.isfinite(true["u"])
     true = {k: v[good] for k, v in true.items()}
     t, columns = instrument_recording.record(ship, true, day, seed, flaws)
