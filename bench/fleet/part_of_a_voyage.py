@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     jobs = [
         (str(p), name) for p in of_families([args.folder]) for name in ACTING if (p.stem, name) not in done
     ]
-    for one in spread(_asked, jobs, args.workers):
+    for one in spread(_answered, jobs, args.workers):
         row = one.answer or {"ship": Path(one.job[0]).stem, "hidden": one.job[1], "failed": one.why}
         with path.open("a") as file:
             file.write(json.dumps(plain(row)) + "\n")
@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _asked(job: Job) -> dict[str, Any]:
+def _answered(job: Job) -> dict[str, Any]:
     path, name = Path(job[0]), job[1]
     family, _, seed = path.stem.rpartition("-")
     model, _ = pickle.loads(path.read_bytes())

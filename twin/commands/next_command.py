@@ -48,6 +48,8 @@ def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any])
     now = "" if sail else f"twin compare {paths} --ship {ship} --report compare.html"
     if lasting := result["answer"]["lasting"]:
         now = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
+    elif result["verdict"] == "nothing_missing":
+        now += "; a healthy voyage is also one more reference for twin calibrate" * bool(now)
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
         now = f"twin diagnose {paths} OTHER-DAY.mcap --ship {ship}: voyages together tell more than one"
     return "; or now: ".join(filter(None, (sail, now)))
