@@ -167,7 +167,7 @@ def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
         likely = {n: w for n, w in likely.items() if w > best.hypothesis.log_weight - CLOSE}
         tried = []
         for name in sorted(likely, key=lambda n: -likely[n])[:2]:
-            progress(f"testing whether {name} acted, too")
+            progress(f"testing whether {name} acted beside {' + '.join(chosen)}")
             tried.append(_relinearised(case, _set(case, (*chosen, name)), best))
         better = max(tried, key=lambda f: f.hypothesis.log_weight, default=best)
         if better.hypothesis.log_weight <= best.hypothesis.log_weight:
