@@ -72,11 +72,11 @@ def _answered(job: Job) -> dict[str, Any]:
     return {"ship": path.stem, "hidden": name} | said
 
 
-def answer(verdict: str, missing: Sequence[str], hidden: str) -> str:
+def answer(reason: str, missing: Sequence[str], hidden: str) -> str:
     """Which of ANSWERS this is; weather that is named beside it never counts."""
     named = causes(list(missing))
     if not named:
-        return "nothing missing" if verdict == "nothing_missing" or missing else "no name"
+        return "nothing missing" if reason in ("nothing", "weather_only") else "no name"
     return "itself" if hidden in named else "another name"
 
 
@@ -92,7 +92,7 @@ def table(rows: Sequence[Mapping[str, Any]]) -> list[str]:
         some = [r for r in rows if r["hidden"] == name and "facts" in r]
         counts = []
         for kind in ANSWERS:
-            now = sum(answer(r["verdict"], r["missing"], name) == kind for r in some)
+            now = sum(answer(r["reason"], r["missing"], name) == kind for r in some)
             before = sum(_without(r) == kind for r in some)
             counts.append(f"{now} ({before})")
         lines.append(f"| {name} | {len(some)} | {' | '.join(counts)} |")
@@ -107,4 +107,4 @@ def table(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def _without(row: Mapping[str, Any]) -> str:
     decided = decide(unasked(Facts.read(row["facts"])))
-    return answer(decided.verdict, decided.missing, row["hidden"])
+    return answer(decided.reason, decided.missing, row["hidden"])

@@ -24,24 +24,24 @@ def test_a_force_that_acts_in_the_second_half_leaves_the_first_as_it_was():
 
 
 @pytest.mark.parametrize(
-    ("verdict", "missing", "kind"),
+    ("reason", "missing", "kind"),
     [
-        ("unknown", [], "no name"),
-        ("undecided", [], "no name"),
-        ("missing", ["HullFouling", "Current"], "itself"),
-        ("missing", ["PropellerWear"], "another name"),
-        ("nothing_missing", [], "nothing missing"),
-        ("missing", ["Current"], "nothing missing"),
+        ("comes_and_goes", [], "no name"),
+        ("weather", ["Current"], "no name"),
+        ("named", ["HullFouling", "Current"], "itself"),
+        ("named", ["PropellerWear"], "another name"),
+        ("nothing", [], "nothing missing"),
+        ("weather_only", ["Current"], "nothing missing"),
     ],
 )
-def test_which_answer_it_is(verdict, missing, kind):
-    assert answer(verdict, missing, "HullFouling") == kind
+def test_which_answer_it_is(reason, missing, kind):
+    assert answer(reason, missing, "HullFouling") == kind
 
 
 def test_what_would_have_been_said_stands_in_brackets():
     f = facts(replace(cause("HullFouling"), varies=0.97))
     said = decide(f)
-    row = {"hidden": "HullFouling", "facts": f.as_json(), "verdict": said.verdict, "missing": said.missing}
+    row = {"hidden": "HullFouling", "facts": f.as_json(), "reason": said.reason, "missing": said.missing}
     assert (said.missing, decide(unasked(f)).missing) == ((), ("HullFouling",))
     line = next(x for x in table([row, {"hidden": "TowForce", "failed": "no"}]) if "HullFouling" in x)
     assert line == "| HullFouling | 1 | 1 (0) | 0 (1) | 0 (0) | 0 (0) |"

@@ -22,8 +22,7 @@ def after_import(voyage: str, ship: str | None) -> str:
 
 def after_map(files: Sequence[str], made: str | None) -> str:
     """A map that was proposed is confirmed by a person."""
-    by = f"twin import {' '.join(files)} --map {made} -o VOYAGE.mcap"
-    return f"next: read it, correct what is marked, then {by}"
+    return f"next: read and correct it, then twin import {' '.join(files)} --map {made} -o VOYAGE.mcap"
 
 
 def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None, faults: bool) -> str:
@@ -48,11 +47,10 @@ def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any])
     now = "" if sail else f"twin compare {paths} --ship {ship} --report compare.html"
     if lasting := result["answer"]["lasting"]:
         now = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
-    elif result["verdict"] == "nothing_missing":
-        now += "; a healthy voyage is also one more reference for twin calibrate" * bool(now)
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
         now = f"twin diagnose {paths} OTHER-DAY.mcap --ship {ship}: voyages together tell more than one"
-    return "; or now: ".join(filter(None, (sail, now)))
+    use = "; it is one more reference for twin calibrate" * (result["verdict"] == "nothing_missing")
+    return "; or now: ".join(filter(None, (sail, now))) + use
 
 
 def add_typed(args: argparse.Namespace) -> str:

@@ -94,6 +94,7 @@ def test_the_last_rule_always_holds_and_each_reason_has_one_sentence():
         ({"nothing": 0.7}, "undecided", "cannot_tell"),
         ({"power": 0.5}, "undecided", "no_power"),
         ({"error_nothing": 1.8}, "undecided", "astray"),
+        ({"left": Left(1.0, 1.0, 3.1)}, "undecided", "restless"),
         ({"manoeuvre": False}, "undecided", "no_manoeuvre"),
         ({"unknown": 0.6, "nothing": 0.3, "error_nothing": 2.0}, "unknown", "unexplained"),
         (

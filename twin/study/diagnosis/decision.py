@@ -71,8 +71,14 @@ def lacks_weather(f: Facts) -> bool:
 
 
 def in_order(f: Facts) -> bool:
-    """Whether no cause of ship and instruments is missing, on voyages that would have shown most."""
-    return f.nothing >= criteria.SURE and f.power >= criteria.POWER and not missed(f)
+    """Whether no cause of ship and instruments is missing, on voyages that would have shown most and were no
+    rougher than the references."""
+    return f.nothing >= criteria.SURE and f.power >= criteria.POWER and not missed(f) and not restless(f)
+
+
+def restless(f: Facts) -> bool:
+    """Whether these voyages hold clearly more that no effect explains than the references did."""
+    return f.left.restless >= criteria.CLEAR
 
 
 def pushed(f: Facts) -> bool:
@@ -204,6 +210,14 @@ RULES: tuple[Rule, ...] = (
         say.astray,
         f"no cause is missing (probability {percent(criteria.SURE)} or more), but the model leaves more than "
         f"{num(criteria.NEARLY, 3)} times the expected error",
+    ),
+    Rule(
+        "restless",
+        lambda f: f.nothing >= criteria.SURE and restless(f),
+        "undecided",
+        say.restless,
+        f"no cause is missing (probability {percent(criteria.SURE)} or more), but the voyages hold more that "
+        f"no effect explains than the references did (log odds {num(criteria.CLEAR)} or more)",
     ),
     Rule(
         "no_power",

@@ -132,6 +132,14 @@ def astray(result: Result) -> str:
     return f"Undecided: no known effect is likely, but {_error(result)}."
 
 
+def restless(result: Result) -> str:
+    """More than on the references that nothing explains, evenly."""
+    return (
+        "Undecided: no known effect is likely, but the ship moved more than any effect explains, and more "
+        "than on the reference voyages: a rough day, or something that acted for a part of the time."
+    )
+
+
 def pushed_in_weather(result: Result) -> str:
     """A push, in waves."""
     return (
