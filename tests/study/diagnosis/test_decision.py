@@ -170,6 +170,7 @@ def test_a_cause_that_could_not_be_named_anyhow_does_not_come_and_go():
         ({}, None),
         ({"probability": 0.7, "with_rivals": 0.85}, "unlikely"),
         ({"probability": 0.6, "with_rivals": 0.97}, None),
+        ({"probability": 0.44, "with_rivals": 0.97}, "unlikely"),
         ({"error_gain": 0.02}, "no_nearer"),
         ({"in_explanation": False}, "not_in_explanation"),
         ({"belongs_to": "instrument", "error_gain": 0.0}, None),

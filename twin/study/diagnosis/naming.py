@@ -49,10 +49,13 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
     ),
     CauseRule(
         "unlikely",
-        lambda f, c: c.probability < criteria.NAMED and c.with_rivals < criteria.CERTAIN,
+        lambda f, c: (
+            c.probability < criteria.LOST
+            or (c.probability < criteria.NAMED and c.with_rivals < criteria.CERTAIN)
+        ),
         f"its probability is below {percent(criteria.NAMED)}, and the probability that it is there, or "
-        "one of "
-        f"those which these voyages cannot tell from it, is below {percent(criteria.CERTAIN)}",
+        f"one of those which these voyages cannot tell from it, is below {percent(criteria.CERTAIN)}; or it "
+        f"is not likelier than not ({percent(criteria.LOST)})",
     ),
     CauseRule(
         "change_within_form",
