@@ -7,7 +7,7 @@ from twin import whole
 from twin.api.update import check_proof, of_sailed
 from twin.commands import arguments
 from twin.commands.next_command import add_typed
-from twin.commands.verb_output import files, lines_to, progress, with_request
+from twin.commands.verb_output import files, lines_to, progress, with_request, wrote
 from twin.errors import ThresholdError
 from twin.physics.effects import find_for
 from twin.physics.ship import load
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     print("\n".join(found.text()), file=(page := lines_to(args) if made.accepted else sys.stderr))
     if made.accepted:
         save(made.ship, args.output, args.ship)
-        print(f"\nwrote {args.output}", file=page)
+        print(f"\n{wrote(args.output)}", file=page)
     files(args, found, page)
     if not made.accepted:
         raise ThresholdError(f"{made.refused} {args.output} was not written. --force writes it.")

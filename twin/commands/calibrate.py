@@ -7,7 +7,7 @@ import sys
 from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands import arguments
-from twin.commands.verb_output import files, lines_to, progress
+from twin.commands.verb_output import files, lines_to, progress, wrote
 from twin.errors import ThresholdError
 from twin.physics.ship import load
 from twin.recording.ship_file_writer import save
@@ -49,5 +49,5 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(found.text()), file=sys.stderr)
         raise ThresholdError(f"{found.refused} {args.output} was not written.")
     compare = f"twin compare VOYAGE.mcap --ship {args.output} --report compare.html"
-    print("\n".join([*found.text(), "", f"wrote {args.output}", f"next: {compare}"]), file=lines_to(args))
+    print("\n".join([*found.text(), "", wrote(args.output), f"next: {compare}"]), file=lines_to(args))
     return 0

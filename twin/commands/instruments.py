@@ -8,7 +8,7 @@ from twin import whole
 from twin.api.instruments import FRAMES, InstrumentCheck, instruments
 from twin.commands import arguments
 from twin.commands.next_command import after_instruments
-from twin.commands.verb_output import lines_to, progress, with_request
+from twin.commands.verb_output import lines_to, progress, with_request, wrote
 from twin.errors import SettingsError
 from twin.physics.ship import Ship, load
 from twin.recording.formats.choose import sources_of
@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     print("\n".join(done.text()), file=page)
     if args.output:
         _write(args, ship, done)
-        print(f"\nwrote {args.output}", file=page)
+        print(f"\n{wrote(args.output)}", file=page)
     if args.json:
         command = f"twin instruments {' '.join(args.voyages)}{f' --ship {args.ship}' if ship else ''}"
         answer = with_request(done, command, ship=args.ship, voyages=args.voyages)

@@ -2,10 +2,12 @@
 
 import argparse
 import sys
+from pathlib import Path
 from typing import Any, TextIO
 
 from twin import whole
 from twin.api.result import Result
+from twin.physics import ship_arrays
 
 
 def progress(text: str) -> None:
@@ -21,6 +23,12 @@ def lines_to(args: argparse.Namespace) -> TextIO:
 def with_request(found: Result, command: str, **files: Any) -> Result:
     """The result with what was typed and of which files it is."""
     return found.with_keys(command=command, files=files)
+
+
+def wrote(path: str) -> str:
+    """That a ship file was written, and the file of arrays without which it is not read."""
+    arrays = ship_arrays.arrays_file(Path(path))
+    return f"wrote {path}" + f" and {arrays} beside it: keep the two together" * bool(arrays)
 
 
 def files(args: argparse.Namespace, found: Result, page: TextIO) -> None:

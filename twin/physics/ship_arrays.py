@@ -6,6 +6,7 @@ lost without a word. A ship file of an earlier version has its arrays in itself;
 line of the log says so."""
 
 import json
+import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,12 @@ def joined(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
         section, _, key = where.partition(".")
         whole_table.setdefault(section, {})[key] = array
     return whole_table
+
+
+def arrays_file(path: Path) -> str:
+    """The name of the file that holds the arrays of the ship file `path`; "" where it has none."""
+    told = tomllib.loads(path.read_text(encoding="utf-8")).get(SECTION)
+    return "" if told is None else _name(told, path)
 
 
 def said_of_old(table: Mapping[str, Any], people: Sequence[str], path: Path) -> None:

@@ -108,17 +108,14 @@ def verdict(result: dict[str, Any]) -> str:
     of = "of the sensors alone" if expects["of"] == "sensors" else "for this calibrated ship"
     error = f"{num(row[keys[0]], 3)} m and {num(row[keys[1]], 2)} deg"
     expected = f"expected {of}: {num(expects[keys[0]], 2)} m and {num(expects[keys[1]], 2)} deg"
-    ratio = f"ratio {num(times[0], 2)} and {num(times[1], 2)}"
+    ratio = f"ratio {num(times[0], 3)} and {num(times[1], 3)}"
     head = f"{as_given(row['horizon_s'])} s open-loop error: {error}; {expected} ({ratio})"
+    stay = "95 % of healthy voyages stay" if "limit95" in expects else "a healthy voyage usually stays"
+    usual = f"({stay} below {num(clearly, 3)})"
     if max(times) < clearly:
-        stay = "95 % of healthy voyages stay" if "limit95" in expects else "a healthy voyage usually stays"
-        return f"{head}: no more than expected ({stay} below {num(clearly, 2)})."
-    where = result["where"][:1]
-    return (
-        head
-        + "".join(
-            f"; it is {num(w['error_ratio'], 2)} times larger with {w['condition']} than elsewhere"
-            for w in where
-        )
-        + "."
+        return f"{head}: no more than expected {usual}."
+    where = (
+        f"; it is {num(w['error_ratio'], 2)} times larger with {w['condition']} than elsewhere"
+        for w in result["where"][:1]
     )
+    return f"{head}: more than expected {usual}{''.join(where)}."
