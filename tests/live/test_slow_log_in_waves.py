@@ -11,7 +11,7 @@ from bench.promise_returns import heard, loop_for
 from bench.reference import SeaCase, Weather, simulate
 from bench.reference.hulls import HULLS
 from bench.reference.trial_legs import COURSE, Leg
-from tests.thorough import one_of
+from tests.thorough import one_of, thorough
 
 SEA_HZ, TURNS_S, SECONDS, LIES_S = 10, 300.0, 480.0, 400.0
 LOUD = "far noisier than it was"
@@ -47,6 +47,7 @@ def loud_ticks(rows, hz, alter=lambda row, t: None):
     return told
 
 
+@thorough
 @pytest.mark.parametrize("hz", one_of((5, 10)))
 def test_the_sway_of_beam_seas_is_no_noise_of_the_log(rows, hz):
     """Expected: nothing is called noisy, though the log's scatter has grown to many times what it was in the sea

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.thorough import one_of
+from tests.thorough import one_of, thorough
 
 ROOT = Path(__file__).parents[2]
 PROJECT = """[build-system]
@@ -170,6 +170,7 @@ def calibrated(installed, tmp_path_factory):
     return file, told(installed, CALIBRATE, file)
 
 
+@thorough
 def test_a_calibration_keeps_what_is_usual_of_the_effects_of_others(calibrated):
     """Expected: how much of an effect of the ship or of an instrument a healthy ship shows is in its file, by its
     numbers; of the weather how strong it was, without a number, for tomorrow's is another one."""

@@ -86,6 +86,7 @@ def test_a_zigzag_is_not_suspected_even_where_half_of_the_rudder_is_worn_away(kv
     assert learned.adaptation.updates > updates + 3900
 
 
+@thorough
 @pytest.mark.parametrize("held_deg", [0.0, 35.0], ids=["straight course", "turning circle"])
 def test_a_rudder_that_is_truly_held_is_not_suspected(kvlcc2, make_bridge, held_deg):
     """Test: after some helm the rudder stays for eight minutes, feedback without noise. Expected: nothing is

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.study.instruments.test_instruments import EVERY, HEADING, KEPT, late, voyage
+from tests.thorough import thorough
 from twin.physics.effects.sensor_delay import SensorDelay
 from twin.physics.ship import load
 from twin.study.calibration.own_instruments import established, own_instruments
@@ -148,6 +149,7 @@ def test_counted_from_the_other_instrument_an_age_is_what_the_first_was_earlier_
     assert before.counted_from("gnss_delay") is before  # of it the references told nothing
 
 
+@thorough
 @pytest.mark.parametrize(
     ("frames", "velocity_by"),
     [(("course",) * 3, "compass"), (("body",) * 3, "receiver"), (("course", "body", "course"), "")],
