@@ -6,8 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.study.conftest import voyage
 from tests.thorough import thorough
 from twin.physics.effects import find
+from twin.physics.state import Force
 from twin.study.diagnosis import moments as moment_of
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.effect_diagnosis import diagnose
@@ -124,6 +126,22 @@ def test_what_is_most_probable_of_everything_is_where_the_sum_of_squares_stands_
     assert theta == pytest.approx(cost(*np.split(best, 2))[1], abs=1e-3)
 
 
+class Tug(find("TowForce")):
+    """It pulls from 8 to 15 minutes after the voyage began: ten ship lengths."""
+
+    def force(self, s, ship):
+        return super().force(s, ship) if 480.0 <= s.t < 900.0 else Force(0.0, 0.0, 0.0)
+
+
+def test_a_pull_of_ten_lengths_is_told_with_its_times_and_about_its_size(tanker):
+    voyage_of = voyage(Tug.absent(tanker).but(ahead=-1.2e6), of=tanker)
+    case = assemble([voyage_of], tanker)
+    told = moments(case, as_she_is(case))
+    assert told and all(m.start_s > 430.0 and m.end_s < 950.0 for m in told)
+    assert sum(m.end_s - m.start_s for m in told) > 200.0
+    assert told[0].as_json(case.model)["X_N"] == pytest.approx(-1.2e6, rel=0.2)
+
+
 def test_a_moment_is_told_as_a_force(case_of, tanker):
     case = case_of("nothing")
     moment = replace(stretches(case, as_she_is(case))[0], push=np.array([1.0, 0.0, 0.0]))
@@ -144,5 +162,5 @@ def test_voyages_that_were_logged_at_different_rates_are_asked_side_by_side(tank
     assert case.tracks[1].h > 2.0 * case.tracks[0].h
     for name in ("nothing", "seldom"):
         lasts = [m.end_s - m.start_s for m in asked if m.voyage == name]
-        assert max(lasts) == pytest.approx(4.0 * float(tanker.scale("time")), rel=0.1)
+        assert max(lasts) == pytest.approx(16.0 * float(tanker.scale("time")), rel=0.1)
         assert max(m.end_s for m in asked if m.voyage == name) > 1100.0

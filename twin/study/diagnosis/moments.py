@@ -2,8 +2,8 @@
 net that was caught and lost.
 
 What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with
-which nothing else is wrong would be called sound. So, beside the best hypothesis, each stretch of a few
-lengths is asked whether it is likelier with a push of its own: a constant acceleration in surge, sway and yaw
+which nothing else is wrong would be called sound. So, beside the best hypothesis, each stretch of one to
+sixteen lengths is asked whether it is likelier with a push of its own: a constant acceleration in surge, sway and yaw
 of about the size of the ship's own forces, integrated out."""
 
 from collections.abc import Sequence
@@ -24,7 +24,8 @@ from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import likeliest
 from twin.study.track.segments import segments
 
-LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
+# of a stretch, in ship lengths, up to a segment's; each begins half-way through the one before
+LENGTHS = (1.0, 2.0, 4.0, 8.0, 16.0)
 PUSH_LOG_BAYES = 15.0  # log evidence, tempered, that a push of its own must add
 IN_WAVES = 30.0  # and where waves toss it: a group of them pushes, too
 SWELL_S = 25.0  # the longest waves; what swings it more slowly may be what is asked for
