@@ -3,8 +3,8 @@ net that was caught and lost.
 
 What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with
 which nothing else is wrong would be called sound. So, beside the best hypothesis, each stretch of one to
-sixteen lengths is asked whether it is likelier with a push of its own: a constant acceleration in surge, sway and yaw
-of about the size of the ship's own forces, integrated out."""
+sixteen lengths is asked whether it is likelier with a push of its own: a constant acceleration in surge,
+sway and yaw of about the size of the ship's own forces, integrated out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
