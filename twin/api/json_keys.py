@@ -98,7 +98,7 @@ DIAGNOSE = (
     JsonKey("missing[]", "", "effects that are named, lasting causes first", NAMED),
     JsonKey("further[]", "", "of these, what is named only with the others in the model", NAMED),
     JsonKey("more", "", "whether something is left beside what is named", FACTS),
-    JsonKey("one_of[]", "", "effects (or forms) of which one is surely there", "the verdict is undecided"),
+    JsonKey("one_of[]", "", "effects (or forms) of which one is there", "`one_of` or `weather` decides"),
     JsonKey("probabilities.nothing_missing", "1", "how often no cause was there on random ships so answered"),
     JsonKey("probabilities.unknown", "1", "how often something without a name was there"),
     *under("candidates[]", CANDIDATE),

@@ -11,6 +11,7 @@ from twin.physics.effects import catalogue
 from twin.study.diagnosis.consider import of_any_day
 from twin.study.diagnosis.effect_diagnosis import too_small
 from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.sentences import weather_at_least
 from twin.study.diagnosis.verdict import MOST_SAID, Weights, capped, group, rivals, weights
 from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import Hypothesis
@@ -153,3 +154,11 @@ def test_a_stream_within_twice_what_the_references_scatter_by_is_of_any_day(east
         SimpleNamespace(effects=effects, nuisance=SimpleNamespace(daily=d)) for d in (daily, {})
     )
     assert of_any_day(known, found) == ("Current",) * ordinary and of_any_day(unknown, found) == ()
+
+
+def test_beside_weather_that_is_named_the_causes_are_told_that_cannot_be_told_apart():
+    result = {"missing": ["Current"], "candidates": [], "facts": {"left": {"error": 1.0}}, "more": False}
+    result |= {"resembles": [], "one_of": []}
+    assert weather_at_least(result).endswith("missing besides, these voyages cannot tell.")
+    told = weather_at_least(result | {"one_of": ["Loading", "RudderWear"]})
+    assert told.endswith("Beside it Loading or RudderWear: these voyages cannot tell which.")

@@ -107,7 +107,7 @@ def _decided(told: SearchAnswer) -> dict[str, Any]:
         "missing": list(decision.missing),
         "further": list(told.further),
         "more": decision.more,
-        "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
+        "one_of": list(facts.one_of) if decision.reason in ("one_of", "weather") else [],
         **_healthy(healthy),
         "probabilities": {"nothing_missing": nothing, "unknown": of_unknown(facts, decision)},
     }
@@ -256,12 +256,13 @@ def _next(
         progress("simulating manoeuvres that would show more")
         unseen = too_small(told.seen, case.present)
         return showing(case, case.model, [n for n in unseen if case.catalogue[n].belongs_to != "voyage"])
+    named = decision.verdict == "missing" and decision.reason != "weather"
     rivals = next(
         (
             (c["effect"], o)
             for c in listed
             for o in c["cannot_be_told_from"]
-            if c["effect"] in decision.missing or decision.verdict != "missing"
+            if c["effect"] in decision.missing or not named
         ),
         None,
     )

@@ -41,10 +41,10 @@ def weather_only(result: Result) -> str:
 def weather_at_least(result: Result) -> str:
     """The same, where the voyages cannot tell whether there is more."""
     names = " and ".join(likely(result, n) for n in result["missing"])
-    return (
-        f"Missing: {names}: water and weather of these voyages. Whether something of ship or instruments is "
-        f"missing besides, these voyages cannot tell.{_more(result)}"
-    )
+    besides = "Whether something of ship or instruments is missing besides, these voyages cannot tell."
+    if result["one_of"]:
+        besides = f"Beside it {' or '.join(result['one_of'])}: these voyages cannot tell which."
+    return f"Missing: {names}: water and weather of these voyages. {besides}{_more(result)}"
 
 
 def nothing(result: Result) -> str:
