@@ -48,7 +48,7 @@ def test_the_result_has_the_keys_of_the_contract(sailed, stream, kvlcc2):
 
 def test_a_perfect_model_is_said_to_be_no_worse_than_one_would_look(sailed, make, kvlcc2):
     result = compare([sailed(make())], Model.of(kvlcc2)).result
-    assert "no more than expected (a healthy voyage usually stays below 1.5)" in result["verdict"]
+    assert "no more than expected (a healthy voyage usually stays below 1.50)" in result["verdict"]
     assert max(result["unexplained_force"].values()) < 0.002 and result["learned_share"] == 0.0
     assert result["where"] == []
 
@@ -69,6 +69,9 @@ def test_the_verdict_is_of_the_longest_horizon_or_of_the_one_that_stands_out(off
     ]
     words = verdict({"horizons": rows, "where": []})
     assert words.startswith(said) and ("no more than" in words) == (max(off) < 1.5)
+    assert ("): more than expected (a healthy voyage usually stays below 1.50)." in words) == (
+        max(off) >= 1.5
+    )
 
 
 def test_a_hidden_current_shows_in_the_errors_and_in_the_sway_force(sailed, stream, make, kvlcc2):
