@@ -70,6 +70,7 @@ def test_something_without_a_name_is_likelier_where_the_verdict_says_so():
 def test_what_acts_like_a_cause_and_does_not_last_is_rather_something_without_a_name():
     steady, fitful = (facts(cause("RudderWear", probability=0.99, varies=p)) for p in (0.0, 0.98))
     assert said(fitful) < 0.5 < said(steady)
+    assert said(facts(cause("RudderWear", probability=0.99, varies=0.25))) == said(steady)
     assert told.of_unknown(fitful, decide(fitful)) > 0.5 > told.of_unknown(steady, decide(steady))
     assert told.posterior_of_unknown(fitful) == pytest.approx(0.97, abs=1e-3)
 

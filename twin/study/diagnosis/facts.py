@@ -10,6 +10,8 @@ hypothesis is true. The rules that read the facts: decision.py.
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from twin.study.diagnosis.criteria import LOST
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -85,8 +87,9 @@ class Facts:
 
     def lasts(self, c: Cause) -> float:
         """How probable it is that a cause that is there acts all the time, as what belongs to the ship does.
-        [1]"""
-        return 1.0 - max(self.comes_and_goes, c.varies) if c.belongs_to == "ship" else 1.0
+        (What is not likelier than not to vary has shown no more than the odds beforehand.) [1]"""
+        varies = c.varies if c.varies >= LOST else 0.0
+        return 1.0 - max(self.comes_and_goes, varies) if c.belongs_to == "ship" else 1.0
 
     def as_json(self) -> dict[str, Any]:
         """As JSON has them."""
