@@ -147,6 +147,11 @@ def candidate(number):
     }  # fmt: skip
 
 
+def diagnosed_weather(number):
+    path = {"horizon_s": 120.0, "error_without": None, "error_floor": None}
+    return {"weather": [candidate(number)], "path": path, "candidates": [], "resembles": []}
+
+
 @pytest.mark.parametrize("number, said", [(COMPASS, ("5.7", "deg")), (GYRO, ("0.57", "deg/s"))])
 def test_every_text_of_an_effect_tells_its_angles_in_degrees(number, said):
     """Test: an angle of 0.1 rad and a rate of 0.01 rad/s in the texts of diagnose, add, fleet, calibrate and
@@ -155,7 +160,7 @@ def test_every_text_of_an_effect_tells_its_angles_in_degrees(number, said):
     cause = {"trend": trend, "number": number, "sizes": []}
     texts = [
         *candidate_lines(candidate(number)),
-        *weather_lines([candidate(number)]),
+        *weather_lines(diagnosed_weather(number)),
         *number_lines({"HeadingBias": {"bias": number}}),
         size(number),
         sizes_in_words({"bias": number}),

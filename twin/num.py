@@ -53,3 +53,8 @@ def readable(number: Mapping[str, Any]) -> dict[str, Any]:
     unit, k = READABLE.get(number["unit"], (number["unit"], 1.0))
     sizes = {key: k * number[key] for key in IN_ITS_UNIT if number.get(key) is not None}
     return dict(number) | sizes | {"unit": "" if unit == "-" else unit}
+
+
+def clock(seconds: float) -> str:
+    """Seconds since a voyage began as minutes and seconds, m:ss."""
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"

@@ -63,6 +63,12 @@ ESTIMATE = (
     JsonKey("high95", "of the number", "upper end"),
     JsonKey("unit", "", "its unit"),
 )
+STREAM = (
+    JsonKey("voyage", "", "a moment of a stream: its voyage", "it is a stream"),
+    JsonKey("time_s", "s", "time since the voyage began", "it is a stream"),
+    JsonKey("speed_mps", "m/s", "how fast the water moves then", "it is a stream"),
+    JsonKey("toward_deg", "deg", "toward where, from true north", "it is a stream"),
+)
 TYPICAL_FORCE = (
     JsonKey("typical_force.X_N", "N", "root mean square of its force ahead"),
     JsonKey("typical_force.Y_N", "N", "root mean square of its side force"),

@@ -9,7 +9,7 @@ function rankingSection() {
   const forms = (RESULT.resembles || []).flatMap((c) => [el("p.note", null, `${like}, which is not in the catalogue of effects. ${c.says}`), candidate(c)]);
   const causes = (RESULT.candidates || []).map(candidate), out = undecided ? [...causes, ...forms] : [...forms, ...causes];
   if (!out.length) out.push(el("p.note", null, "No cause is likely enough to be shown."));
-  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, allowed for whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map(readable).map((p) => withUnit(`${p.name} ${num(p.value)}`, p)).join(", ")})`).join("; ")));
+  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, allowed for whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${(w.stream || []).length ? streamInWords(w.stream) : w.parameters.map(readable).map((p) => withUnit(`${p.name} ${num(p.value)}`, p)).join(", ")})`).join("; ")));
   if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log Bayes factor behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
   if (RESULT.p_value_sentence) out.push(el("p.note", { style: { marginTop: "10px" } }, RESULT.p_value_sentence));
   const missing = (RESULT.answer || {}).lasting || RESULT.missing || [];
@@ -25,13 +25,19 @@ function candidate(c) {
   const force = c.typical_force || {}, weak = (c.probability || 0) < 0.1 && !(RESULT.missing || []).includes(c.effect);
   const left = el("div", null, el("h3", null, c.effect), el("div", null, bar(c.probability || 0), `${num(100 * (c.probability || 0), 2)} %`));
   const said = [["X_N", "along the ship", "N"], ["Y_N", "across it", "N"], ["N_Nm", "of turning", "N m"]].filter(([k]) => force[k]).map(([k, w, u]) => `${si(Math.abs(force[k]), u)} ${w}`);
-  const right = el("div", null, said.length ? el("div", { title: "root mean square over these voyages; the sign is in its numbers" }, `${said.join(", ")} (root mean square)`) : null, (c.parameters || []).length > 6 ? curve(c.parameters) : (c.parameters || []).map(parameter));
+  const right = el("div", null, said.length && !(c.stream || []).length ? el("div", { title: "root mean square over these voyages; the sign is in its numbers" }, `${said.join(", ")} (root mean square)`) : null, (c.stream || []).length > DATA.voyages.length ? el("div", null, streamInWords(c.stream)) : (c.parameters || []).length > 6 ? curve(c.parameters) : (c.parameters || []).map(parameter));
   if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; ${num(c.error_floor)} m is expected even with the right cause` : ""}`));
   if (c.together_sd) right.append(el("p.note", null, `Each number alone may be ${c.parameters.some((p) => p.in_ship_file !== undefined) ? "what the ship file has" : "none"}, for its 95 % interval holds that; all together are ${num(c.together_sd)} standard deviations from it, so that it is named.`));
   if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
   if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${DATA.voyages.length > 1 && p.voyage ? `${p.voyage} ` : ""}${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
   if (!weak && worthTrying(c.effect)) right.append(command(addCommand(c.effect)));
   return el(weak ? ".candidate.weak" : ".candidate", null, left, right);
+}
+
+/** A stream as a navigator says it, moment by moment where it changes. */
+function streamInWords(rows) {
+  const voyages = new Set(rows.map((r) => r.voyage)).size;
+  return rows.map((r) => `${num(r.speed_mps, 2)} m/s toward ${Math.round(r.toward_deg)}°${rows.length > voyages ? ` at ${clock(r.time_s)}` : ""}${voyages > 1 ? ` on ${r.voyage}` : ""}`).join(", ");
 }
 
 /** Whether an effect that is not named may be added all the same: one of several when the voyages could not tell, or a rival of what is named. */

@@ -10,6 +10,7 @@ from twin.num import READABLE
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.report.series import packed, stitched
+from twin.study.diagnosis.set_and_rate import stream_in_words
 from twin.study.prediction.unexplained import AXES
 from twin.study.reference.sailed import fed
 from twin.study.track.track import READINGS, STATE, Track
@@ -85,10 +86,12 @@ def ways(tracks: Sequence[Track], model: Model, name: str) -> list[str]:
 def cause_view(
     tracks: Sequence[Track], model: Model, candidate: Mapping[str, Any], horizon_s: float
 ) -> dict[str, Any]:
-    """A cause for the page: numbers, ways, the lines predicted with it, and what it changes."""
+    """A cause for the page: numbers (of a stream also in words), ways, the lines predicted with it, and what
+    it changes."""
     told: dict[str, Any] = {
         "effect": candidate["effect"],
         "numbers": [number(p) for p in candidate.get("parameters", [])],
+        "stream": stream_in_words(candidate.get("stream", [])),
     }
     better = with_cause(model, candidate)
     if better is None:

@@ -53,7 +53,7 @@ const bar = (p, words) => el("span.chance", null, svg("svg", { viewBox: "0 0 100
 function cause(c, a, chosen) {
   const told = a.view.causes.find((x) => x.effect === c.effect) || { numbers: [] }, on = chosen === c.effect, p = c.probability;
   const curve = told.numbers.length > 4;
-  const sizes = curve ? el("p.note", null, `${told.numbers.length} numbers that make a curve over time, ${span(told.numbers)}.`) : el("ul", null, told.numbers.map((n) => el("li", null, `${n.name.replaceAll("_", " ")}: `, el("b", null, `${num(n.value)} ${n.unit}`), n.low95 === null ? "" : ` (95 %: ${num(n.low95)} to ${num(n.high95)} ${n.unit})`)));
+  const sizes = curve && told.stream ? el("p", null, told.stream) : curve ? el("p.note", null, `${told.numbers.length} numbers that make a curve over time, ${span(told.numbers)}.`) : el("ul", null, told.numbers.map((n) => el("li", null, `${n.name.replaceAll("_", " ")}: `, el("b", null, `${num(n.value)} ${n.unit}`), n.low95 === null ? "" : ` (95 %: ${num(n.low95)} to ${num(n.high95)} ${n.unit})`)));
   const ways = told.ways?.length ? `It acts ${told.ways.join(", ")}. ` : "", f = c.typical_force || {};
   const force = [["X", f.X_N, 1e-3, "kN"], ["Y", f.Y_N, 1e-3, "kN"], ["N", f.N_Nm, 1e-6, "MN m"]].filter(([, x]) => x).map(([n, x, k, u]) => `${n} ${num(k * x)} ${u}`).join(", ");
   return el("article.card", { "aria-label": c.effect }, el(".head", null, el("h3", null, c.effect), p === undefined ? null : el("b", null, `${num(100 * p, 2)} %`), button(on ? "Shown below" : "Show the prediction with it", () => change({ with: c.effect }), { class: "small", id: `with-${c.effect}`, "aria-pressed": String(on), disabled: !told.lines })),

@@ -24,6 +24,7 @@ from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found, Sets
+from twin.study.diagnosis.set_and_rate import set_and_rate
 from twin.study.diagnosis.verdict import (
     alike,
     capped,
@@ -191,6 +192,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         if name in told.decision.missing
         else None,
         "typical_force": typical_force(case, best, name),
+        "stream": set_and_rate(case, best, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": _without(case, found, considered, name),
         "error_with": held_out_error(case, best)
@@ -238,10 +240,12 @@ def _weather(
         return out | {
             "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
             "typical_force": None,
+            "stream": [],
         }
     return out | {
         "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best, name),
+        "stream": set_and_rate(case, best, name),
     }
 
 

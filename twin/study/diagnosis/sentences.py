@@ -3,7 +3,8 @@ bridge."""
 
 from typing import Any
 
-from twin.num import num, percent
+from twin.num import clock, num, percent
+from twin.study.diagnosis.acting import acting
 from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER, SIGNIFICANT
 
 Result = dict[str, Any]
@@ -74,11 +75,11 @@ def pushed(result: Result) -> str:
 def comes_and_goes(result: Result) -> str:
     """Something is missing that does not act all the time."""
     fitful = [name for name, why in result["answer"]["not_named"].items() if why == "comes_and_goes"]
-    says = [
-        f"{c['effect']}, which would last: {c['says']}" for c in result["candidates"] if c["effect"] in fitful
-    ]
+    told = [c for c in result["candidates"] if c["effect"] in fitful]
+    says = [f"{c['effect']}, which would last: {c['says']}" for c in told]
+    when = next((acting(c["over_time"]) for c in told if c.get("over_time")), "comes and goes")
     return (
-        "Something is missing that comes and goes, and is not in the catalogue of effects. While it acts it "
+        f"Something is missing that {when}, and is not in the catalogue of effects. While it acts it "
         f"resembles {(says or fitful)[0]}"
     )
 
@@ -245,12 +246,7 @@ def force(forces: Result) -> str:
 
 def when(m: Result) -> str:
     """From when to when on which voyage."""
-    return f"from {clock(m['start_s']).strip()} to {clock(m['end_s']).strip()} on {m['voyage']}"
-
-
-def clock(seconds: float) -> str:
-    """Seconds as minutes and seconds, m:ss."""
-    return f"{int(seconds) // 60:>4d}:{int(seconds) % 60:02d}"
+    return f"from {clock(m['start_s'])} to {clock(m['end_s'])} on {m['voyage']}"
 
 
 def _is_weather(result: Result, name: str) -> bool:

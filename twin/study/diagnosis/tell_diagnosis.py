@@ -2,11 +2,12 @@
 
 from typing import Any
 
-from twin.num import as_given, num, percent, readable
+from twin.num import as_given, clock, num, percent, readable
 from twin.recording.checks import whose
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.overtime import changes
+from twin.study.diagnosis.set_and_rate import stream_in_words
 from twin.study.estimation.start import waves_in_words
 from twin.study.track.jumps import jumps_in_words
 
@@ -24,7 +25,8 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     else:
         only_if = ["if it is one of the known effects:"] if result["verdict"] == "unknown" and known else []
         lines += resembling + only_if + known
-    lines += weather_lines(result["weather"])
+    weather = weather_lines(result)
+    lines += weather if lines[-1] else weather[1:]
     nothing, unknown = (percent(result["probabilities"][k]) for k in ("nothing_missing", "unknown"))
     lines.append(
         f"nothing of ship and instruments missing: {nothing}   something unknown: {unknown}   (each as often "
@@ -59,24 +61,33 @@ def to_sail(m: dict[str, Any]) -> str:
     return f"To {what}, sail: {m['manoeuvre']} ({m['why']})."
 
 
-def weather_lines(weather: list[dict[str, Any]]) -> list[str]:
-    """Today's water and wind, in a part of their own."""
-    if not weather:
+def weather_lines(result: dict[str, Any]) -> list[str]:
+    """Today's water and wind, in a part of their own, and how near the model comes with them."""
+    if not result["weather"]:
         return []
     lines = ["", "today's water and wind:"]
-    for w in weather:
-        numbers = ", ".join(
-            f"{p['name']} {num(p['value'], 3)} {p['unit']}".rstrip()
-            for p in map(readable, w["parameters"])
-            if abs(p["value"]) > 0.0
+    lines += [f"{percent(w['probability']):>6}  {w['effect']}: {_numbers(w)}" for w in result["weather"]]
+    path, causes = result["path"], result["candidates"] + result["resembles"]
+    if path["error_without"] is not None and not causes:
+        lines.append(
+            f"        with it the model ends {num(path['error_without'], 3)} m off after "
+            f"{path['horizon_s']:.0f} s ({num(path['error_floor'], 3)} m are expected); twin compare allows "
+            "for no water and wind but the ship file's"
         )
-        pushed = (
-            (f"; typically {say.force(w['typical_force'])}")
-            if w["typical_force"] and say.force(w["typical_force"])
-            else ""
-        )
-        lines.append(f"{percent(w['probability']):>6}  {w['effect']}: {numbers}{pushed}")
     return [*lines, ""]
+
+
+def _numbers(weather: dict[str, Any]) -> str:
+    """A stream by speed and direction, anything else by its numbers and its force."""
+    if weather.get("stream"):
+        return stream_in_words(weather["stream"])
+    numbers = ", ".join(
+        f"{p['name']} {num(p['value'], 3)} {p['unit']}".rstrip()
+        for p in map(readable, weather["parameters"])
+        if abs(p["value"]) > 0.0
+    )
+    pushed = say.force(weather["typical_force"]) if weather["typical_force"] else ""
+    return f"{numbers}; typically {pushed}" if pushed else numbers
 
 
 def _moment(m: dict[str, Any]) -> str:
@@ -88,19 +99,9 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
     head = f"{percent(c['probability']):>6}  {c['effect']}"
     if c["together_with"]:
         head += f" (together with {', '.join(c['together_with'])})"
-    lines = [head]
-    width = max([12, *(len(p["name"]) for p in c["parameters"])])
-    for p in map(readable, c["parameters"]):
-        file = f"   (ship file: {as_given(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
-        end = "   (at the end of its box)" if p["at_box_end"] else ""
-        lines.append(
-            f"          {p['name']:<{width}} {num(p['value'], 4):>11} {p['unit']:<5} "
-            f"95 %: {num(p['low95'], 4)} to {num(p['high95'], 4)}{file}{end}"
-        )
-        if not p["unit"] and p.get("meaning"):
-            lines.append(f"          {'':<{width}} {p['meaning']}")
+    lines = [head, *_sizes(c)]
     force = c["typical_force"]
-    if say.force(force):
+    if say.force(force) and not c.get("stream"):
         lines.append(f"          typically    {say.force(force)}")
     expected = (
         f" ({num(c['error_floor'], 3)} m is expected even with the right cause)"
@@ -122,6 +123,25 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
     return lines
 
 
+def _sizes(c: dict[str, Any]) -> list[str]:
+    """Each number with its interval; a stream that changes, by its speed and direction."""
+    rows = c.get("stream", [])
+    if len(rows) > len({row["voyage"] for row in rows}):
+        return [f"          {stream_in_words(rows)}"]
+    lines = []
+    width = max([12, *(len(p["name"]) for p in c["parameters"])])
+    for p in map(readable, c["parameters"]):
+        file = f"   (ship file: {as_given(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
+        end = "   (at the end of its box)" if p["at_box_end"] else ""
+        lines.append(
+            f"          {p['name']:<{width}} {num(p['value'], 4):>11} {p['unit']:<5} "
+            f"95 %: {num(p['low95'], 4)} to {num(p['high95'], 4)}{file}{end}"
+        )
+        if not p["unit"] and p.get("meaning"):
+            lines.append(f"          {'':<{width}} {p['meaning']}")
+    return lines
+
+
 def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
     """Why what is likely is not named beside what is."""
     reason = result["answer"]["not_named"].get(c["effect"])
@@ -134,6 +154,6 @@ def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
 
 def _part(p: dict[str, Any]) -> str:
     return (
-        f"            {p['voyage']} {say.clock(p['start_s'])} to {say.clock(p['end_s'])}  "
+        f"            {p['voyage']} {clock(p['start_s']):>7} to {clock(p['end_s']):>7}  "
         f"{p['share']:>6.2f} +- {p['sd']:.2f}"
     )

@@ -74,7 +74,8 @@ def waves_in_words(waves: Sequence[dict[str, Any]]) -> list[str]:
     """The same in words."""
     said = "predictions begin from the motion without them, and no effect is made of what they do"
     return [
-        f"On {w['voyage']} waves move the ship, about every {num(w['period_s'], 2)} s: {said}." for w in waves
+        f"On {w['voyage']} waves or its own roll move the ship about every {num(w['period_s'], 2)} s: {said}."
+        for w in waves
     ]
 
 

@@ -109,7 +109,8 @@ def verdict(result: dict[str, Any]) -> str:
     error = f"{num(row[keys[0]], 3)} m and {num(row[keys[1]], 2)} deg"
     expected = f"expected {of}: {num(expects[keys[0]], 2)} m and {num(expects[keys[1]], 2)} deg"
     ratio = f"ratio {num(times[0], 3)} and {num(times[1], 3)}"
-    head = f"{as_given(row['horizon_s'])} s open-loop error: {error}; {expected} ({ratio})"
+    which = "" if row is rows[-1] else " (of all horizons it stands out most)"
+    head = f"{as_given(row['horizon_s'])} s open-loop error{which}: {error}; {expected} ({ratio})"
     stay = "95 % of healthy voyages stay" if "limit95" in expects else "a healthy voyage usually stays"
     usual = f"({stay} below {num(clearly, 3)})"
     if max(times) < clearly:
