@@ -8,11 +8,13 @@ from export import training_loss  # noqa: E402
 from export.batches import input_names, samples  # noqa: E402
 from export.settings import TrainingSettings  # noqa: E402
 from export.teach import teach  # noqa: E402
+from tests.thorough import thorough  # noqa: E402
 from twin.live.learning.learned_force import scale_of  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 from twin.physics.state import Force  # noqa: E402
 
 
+@thorough
 def test_the_papers_R_is_nothing_whatever_the_network_says(parts):
     """Expected: R by automatic differentiation is zero (it holds by construction), while f is not:
     lambda_phys pulls at nothing."""

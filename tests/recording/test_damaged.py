@@ -137,6 +137,7 @@ def test_import_and_a_played_log_say_what_is_lost(whole, tmp_path, capsys, harm)
     assert sum(1 for _ in played.batches()) > 500 and any("lost" in note for note in played.notes)
 
 
+@thorough
 def test_compare_and_replay_say_it_in_words_in_json_and_on_the_page(whole, tmp_path, capsys):
     path, answer, page = (
         Path(shutil.copy(whole, tmp_path / "v.mcap")),

@@ -40,6 +40,7 @@ def calibrated(voyages, tanker):
     return fitted_core(fitted, [(fitted[1].track, 0)], tanker, by="steps").calibrated()
 
 
+@thorough
 def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
     (own,) = (e for e in calibrated.ship.effects if type(e).__name__ == "ReceiverSmoothing")
     assert own.time == pytest.approx(TIME_S, rel=0.2)

@@ -77,7 +77,7 @@ def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
     assert two["high95"] - two["low95"] < one["high95"] - one["low95"]
 
 
-@pytest.mark.parametrize("name", one_of(["RudderWear", "Current", "HeadingBias"], 2))
+@pytest.mark.parametrize("name", one_of(["RudderWear", "Current", "HeadingBias"]))
 def test_an_effect_hidden_in_the_reference_sea_is_named(diagnosed, name):
     result = diagnosed(name)
     assert result["verdict"] == "missing"

@@ -37,12 +37,14 @@ def whole(half, tanker, biased):
     return further.with_further(half, [biased], tanker)
 
 
+@thorough
 def test_a_cause_that_was_not_named_is_named_with_the_other_in_the_model(whole):
     assert whole.causes == ("HeadingBias", "HullFouling")
     assert whole.further == ("HullFouling",)
     assert "HullFouling" not in whole.decision.not_named
 
 
+@thorough
 def test_the_numbers_of_all_causes_come_from_one_fit(whole):
     found = whole.found[whole.shown]
     assert set(whole.causes) <= set(found.hypothesis.effects)
@@ -56,6 +58,7 @@ def test_the_numbers_of_all_causes_come_from_one_fit(whole):
     assert found.open_loop_error_m < 0.5 * nothing.open_loop_error_m
 
 
+@thorough
 def test_the_whole_takes_its_place_among_the_rivals_with_the_evidence_of_its_path(whole):
     weights = [h.log_weight for h in whole.weighed]
     assert weights == sorted(weights, reverse=True)
@@ -71,6 +74,7 @@ def _scenario(told):
     return told.found[told.joined].hypothesis.scenario
 
 
+@thorough
 def test_the_facts_are_those_of_the_whole(whole, half):
     facts = whole.considered.facts
     assert {c.effect for c in facts.causes} == set(whole.causes)
@@ -86,6 +90,7 @@ def test_a_single_cause_stays_single_and_nothing_is_asked_twice(asked):
     assert said and not [line for line in said if line.startswith("asking again")]
 
 
+@thorough
 def test_a_second_look_is_taken_where_another_cause_would_add_to_the_evidence(half):
     assert further._more_may_be(half)
     without = {s: f for s, f in half.found.items() if "HullFouling" not in s}
@@ -111,6 +116,7 @@ def test_the_sentence_says_what_shows_only_with_the_others():
     assert sentences.further_in_words({"further": []}, names) == ""
 
 
+@thorough
 def test_the_set_is_fitted_also_where_the_first_answer_stood_beside_other_water(half):
     """Beside a stream that the whole does without, no part of it was found: its guess is of first order."""
     stream = {("HeadingBias", "Current"): half.found[half.shown]}
@@ -121,6 +127,7 @@ def test_the_set_is_fitted_also_where_the_first_answer_stood_beside_other_water(
     assert size == pytest.approx(BIAS_RAD, rel=0.2)
 
 
+@thorough
 def test_a_cause_that_ends_at_nothing_beside_the_others_is_not_one(half, whole):
     found = whole.found[whole.joined]
     assert further._stands(half, found, whole.causes)
@@ -130,6 +137,7 @@ def test_a_cause_that_ends_at_nothing_beside_the_others_is_not_one(half, whole):
     assert not further._stands(half, gone, whole.causes)
 
 
+@thorough
 @pytest.mark.parametrize("clearer, named", [(CLEAR + 0.1, True), (CLEAR - 0.1, False)])
 def test_a_further_cause_makes_the_voyages_clearly_more_probable_in_the_same_fit(half, whole, clearer, named):
     """Test: the whole is more probable than the first answer alone by little more, or little less, than what

@@ -7,6 +7,7 @@ import pytest
 
 from tests.study.conftest import voyage
 from tests.study.diagnosis.test_decision import cause, facts
+from tests.thorough import thorough
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.decision import decide
@@ -28,6 +29,7 @@ def test_an_effect_that_is_always_there_is_as_strong_in_every_part(diagnosed):
     assert not any("its size changes with time" in line for line in terminal_lines(result))
 
 
+@thorough
 def test_an_effect_that_came_between_two_voyages_is_named_and_told_by_voyage(tanker, voyages):
     """Half of the time it was not there: that is no force that comes and goes as the ship sails."""
     result = diagnose([voyages["nothing"], voyages["RudderWear"]], tanker).result

@@ -10,8 +10,10 @@ from tests.thorough import thorough
 from twin.physics.effects import catalogue
 from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS
 from twin.study.diagnosis.criteria import SURE
+from twin.study.diagnosis.hollow import hollow
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import Hypotheses, search
+from twin.study.diagnosis.steady import simpler
 from twin.study.diagnosis.verdict import weights
 
 PAIR = ("RudderWear", "SteeringLag")
@@ -66,6 +68,7 @@ def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_j
     assert max(slow.values()) > max(worn.values())
 
 
+@thorough
 def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not_looked_for_again(
     case, in_turn, monkeypatch
 ):
@@ -136,10 +139,10 @@ def test_an_effect_and_a_part_of_it_are_no_pair(case):
 
 
 def test_beside_a_stream_that_changes_a_steady_one_is_judged_too(case):
-    assert book(case).simpler(("VaryingCurrent", "HullFouling")) == [
+    assert simpler(case, ("VaryingCurrent", "HullFouling")) == [
         tuple(n for n in case.candidates if n in ("Current", "HullFouling"))
     ]
-    assert book(case).simpler(("HullFouling",)) == []
+    assert simpler(case, ("HullFouling",)) == []
 
 
 def test_what_an_effect_holds_is_in_the_catalogue():
@@ -174,6 +177,7 @@ def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having
         assert [s for s in book(usual).first if s == ("Current",)][:1] == judged
 
 
+@thorough
 def test_what_any_day_brings_is_no_news_where_it_stands_today(case_of):
     """Test: a stream as strong as any day's, and a ship that knows that and one that does not. Expected: that
     it is nothing new is likelier once it was judged where it stands, and nobody calls it missing; to the ship
@@ -192,15 +196,15 @@ def test_what_any_day_brings_is_no_news_where_it_stands_today(case_of):
     assert weights(usual, told.weighed, told.found).weather["Current"] < SURE
 
 
-@pytest.mark.parametrize("c_d, hollow", [(0.0, True), (0.1, False)])
-def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, hollow):
-    held, chosen = book(case), ("CrossFlowDrag",)
+@pytest.mark.parametrize("c_d, none", [(0.0, True), (0.1, False)])
+def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, none):
+    nothing, chosen = book(case).found[()], ("CrossFlowDrag",)
     z = np.array(
         [{"c_d": c_d, "c_aft": -0.4}.get(u.name, 0.0) if u.owner == chosen[0] else 0.0 for u in case.effects]
     )
-    nothing = held.found[()]
-    held.found[chosen] = replace(nothing, posterior=replace(nothing.posterior, z=z))
-    assert held.hollow(chosen) is hollow
+    there = replace(nothing.hypothesis, effects=chosen)
+    found = replace(nothing, hypothesis=there, posterior=replace(nothing.posterior, z=z))
+    assert hollow(case, found) is none
 
 
 def test_what_shows_another_moment_is_judged_about_its_own_size_if_it_promises_anything(case):

@@ -49,6 +49,7 @@ def ordered(tmp_path_factory, at_sea):
     return paths, hidden, out, json.loads(said.read_text())
 
 
+@thorough
 def test_the_gear_between_order_and_rudder_is_found_on_the_references(ordered):
     _, hidden, out, said = ordered
     (gear,) = [e for e in load(out).effects if type(e) is SteeringLag]
@@ -57,6 +58,7 @@ def test_the_gear_between_order_and_rudder_is_found_on_the_references(ordered):
     assert said["gear"]["delay"]["value"] == gear.delay and said["gear"]["delay"]["sd"] > 0.0
 
 
+@thorough
 def test_what_else_the_ship_file_held_stays_as_it_was(ordered):
     ship = load(ordered[2])
     assert (
@@ -82,6 +84,7 @@ def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_chang
     )
 
 
+@thorough
 def test_an_effect_that_the_ship_has_is_asked_about_from_where_it_stands(ordered):
     model = Model.of(load(ordered[2]))
     (gear,) = model.lags
@@ -92,6 +95,7 @@ def test_an_effect_that_the_ship_has_is_asked_about_from_where_it_stands(ordered
     ]
 
 
+@thorough
 def test_of_an_effect_added_after_calibration_the_ship_file_knows_nothing_but_its_prior(ordered):
     ship = load(ordered[2])
     wear = catalogue()["RudderWear"].absent(ship).but(loss=0.2)

@@ -48,12 +48,15 @@ class SearchAnswer:
 
     @property
     def shown(self) -> Sets:
-        """The set of effects in which what is named stands with its numbers."""
-        exact, named = self.case.ordered(self.decision.missing), set(self.decision.missing)
-        if self.joined or exact in self.found:
-            return self.joined or exact
-        wider = (h.effects for h in self.weighed if h.effects in self.found and named <= set(h.effects))
-        return next(wider, self.weights.best.effects)
+        """The set of effects in which what is named stands with its numbers: the likeliest that was
+        relinearised with these causes and no other, beside whatever weather."""
+        if self.joined:
+            return self.joined
+        named, causes = set(self.decision.missing), set(self.causes)
+        wide = [h.effects for h in self.weighed if h.effects in self.found and named <= set(h.effects)]
+        exact = [s for s in wide if set(self.case.causes(s)) == causes and not self.found[s].steady]
+        own = {s: self.path.with_path(self.found[s].hypothesis).log_weight for s in exact}
+        return max(own, key=lambda s: own[s], default=next(iter(wide), self.weights.best.effects))
 
 
 def answer(

@@ -14,15 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.physics.effect import SensorFault
-from twin.study.diagnosis.altered import floats
 from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case, visible
 from twin.study.diagnosis.consider import left_over
 from twin.study.diagnosis.criteria import NEARLY
 from twin.study.diagnosis.decision import explained
+from twin.study.diagnosis.hollow import hollow
 from twin.study.diagnosis.open_loop_check import OpenLoopCheck, open_loop_check
 from twin.study.diagnosis.refine import Found, Sets, refine
-from twin.study.diagnosis.steady import steady
-from twin.study.estimation.columns import Unknown
+from twin.study.diagnosis.steady import simpler, steady
 from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_sets
 
 MAX_CAUSES = 3  # causes at once
@@ -204,9 +203,9 @@ class Hypotheses:
                 break
             if h.effects not in self.found:
                 return next((part for part in self.parts(h.effects) if part not in self.found), h.effects)
-        for simpler in self.simpler(ranked[0].effects):
-            if simpler not in self.found:
-                return simpler
+        for swapped in simpler(self.case, ranked[0].effects):
+            if swapped not in self.found:
+                return swapped
         while self.last and (self.wide or not SCENARIOS[ranked[0].scenario].plain):
             if (chosen := self.last.pop(0)) not in self.found:
                 return chosen
@@ -218,20 +217,6 @@ class Hypotheses:
         case, day, causes = self.case, self.case.day(effects), self.case.causes(effects)
         fewer = (some for size in range(1, len(causes)) for some in combinations(causes, size))
         return [case.ordered((*day, *some)) for some in ((), *fewer)]
-
-    def simpler(self, effects: Sets) -> list[Sets]:
-        """The same set with a part in the place of an effect that holds it: a current that does not change is
-        a steady one."""
-        swaps = [
-            (name, part)
-            for name in effects
-            for part in self.case.catalogue[name].holds
-            if part in self.case.candidates
-        ]
-        return [
-            tuple(n for n in self.case.candidates if n == part or (n in effects and n != name))
-            for name, part in swaps
-        ]
 
     def judge(self, chosen: Sets) -> None:
         """Enter what the voyages say of this set, and of every set with one effect more, about its own
@@ -251,29 +236,15 @@ class Hypotheses:
         z = boxed(about, chosen, posterior(about, chosen)).z
         wider = self.case.candidates if len(self.case.causes(chosen)) < MAX_CAUSES else self.case.weather
         self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, start)
-        if self.hollow(chosen):
+        if hollow(self.case, self.found[chosen]):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]
         if steady(self.case, self.found[chosen]):
             self.found[chosen] = replace(self.found[chosen], steady=True)
-            self.first = [*self.simpler(chosen), *self.first]
+            self.first = [*simpler(self.case, chosen), *self.first]
         for h in judged:
             if self._counts(chosen, h):
                 self._enter(h)
-
-    def hollow(self, chosen: Sets) -> bool:
-        """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: it
-        would help only with sizes that cannot be, and the set says no more than the rest."""
-        z = self.found[chosen].posterior.z
-        nothing = any(
-            not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name and self._sizes(u)]])
-            for name in chosen
-        )
-        return nothing or not floats(self.case, self.found[chosen])
-
-    def _sizes(self, u: Unknown) -> bool:
-        """Whether this number alone may be what its effect is."""
-        return self.case.catalogue[u.owner].size in ("", u.name)
 
     def _counts(self, chosen: Sets, h: Hypothesis) -> bool:
         """Whether what was said about the size of `chosen` is the better word on this hypothesis: on that set

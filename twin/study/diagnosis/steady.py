@@ -15,7 +15,7 @@ from twin.physics.effect import Flow
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.refine import Found, Sets
 from twin.study.track.track import Track
 
 EDDIES = 0.2  # of a stream, beside its mean, that nobody calls a change (root mean squares)
@@ -40,3 +40,14 @@ def changes(streams: Sequence[Flow], model: Model, tracks: Sequence[Track]) -> f
         velocities.append(np.column_stack([w.u, w.v]))
     moved = np.concatenate([v - v.mean(0) for v in velocities])
     return float(np.linalg.norm(moved)) / max(float(np.linalg.norm(np.concatenate(velocities))), 1e-12)
+
+
+def simpler(case: Case, effects: Sets) -> list[Sets]:
+    """The same set with a part in the place of an effect that holds it: a current that does not change is a
+    steady one."""
+    swaps = [
+        (name, part) for name in effects for part in case.catalogue[name].holds if part in case.candidates
+    ]
+    return [
+        tuple(n for n in case.candidates if n == part or (n in effects and n != name)) for name, part in swaps
+    ]

@@ -21,20 +21,20 @@ from twin.physics.ship import Ship
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.as_filed import in_file, model_with
 from twin.study.diagnosis.assemble import of_tracks
-from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.refine import Found, Sets, refine, standing
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.diagnosis.verdict import parameters
 from twin.study.estimation.box import at_an_end
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
-from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
+from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
+from twin.study.update.beside import beside_the_voyage
 
 UNTOUCHED = 0.1  # a number whose variance changed by a smaller share was not excited
-CLOSE = 3.0  # log odds behind, to first order, within which one of these is judged where it would stand
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
     "wave_to": "wave_direction_deg",
@@ -134,9 +134,9 @@ def fitted(
             f"{', '.join(unknown)}: not in the catalogue of effects that these voyages can "
             "judge. See twin effects."
         )
-    names = _set(case, [e.__name__ for e in effects])
+    names = case.ordered([e.__name__ for e in effects])
     progress(f"fitting {', '.join(names)}")
-    return of_hypothesis(case, names, _beside_the_voyage(case, names, progress))
+    return of_hypothesis(case, names, beside_the_voyage(case, names, progress))
 
 
 def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
@@ -150,65 +150,6 @@ def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
         case,
         found,
     )
-
-
-def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
-    """The named effects, and of the voyage's own water and weather what makes the voyages likelier."""
-    best = _relinearised(case, names, None)
-    while True:
-        more = [n for n in case.candidates if _may_stand_beside(case, n, best.hypothesis.effects)]
-        if not more or best.reduced is None:
-            return best
-        chosen = best.hypothesis.effects
-        likely = {
-            n: e + case.log_prior(_set(case, (*chosen, n)), best.hypothesis.scenario)
-            for n, e in weigh_with(best.reduced, chosen, more)
-        }
-        likely = {n: w for n, w in likely.items() if w > best.hypothesis.log_weight - CLOSE}
-        tried = []
-        for name in sorted(likely, key=lambda n: -likely[n])[:2]:
-            progress(f"testing whether {name} acted beside {' + '.join(chosen)}")
-            tried.append(_relinearised(case, _set(case, (*chosen, name)), best))
-        better = max(tried, key=lambda f: f.hypothesis.log_weight, default=best)
-        if better.hypothesis.log_weight <= best.hypothesis.log_weight:
-            return best
-        best = better
-
-
-def _set(case: Case, names: Sequence[str]) -> Sets:
-    return tuple(n for n in case.candidates if n in names)
-
-
-def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
-    """Whether an effect is water or weather of the voyage (not of its place), new beside these, and neither a
-    part of one of them nor the whole of it."""
-    effect = case.catalogue[name]
-    held = effect.holds
-    return (
-        effect.is_weather()
-        and not effect.of_place
-        and name not in chosen
-        and name not in case.present
-        and not any(name in case.catalogue[n].holds or n in held for n in chosen)
-    )
-
-
-def _relinearised(case: Case, chosen: Sets, start: Found | None) -> Found:
-    """A set of effects relinearised at its estimate, begun where a part of it was found to stand, or at its
-    first-order guess in the likeliest noise scenario."""
-    if start is not None and start.reduced is not None:
-        scenario, about, part = start.hypothesis.scenario, start.reduced, start
-    else:
-        scenarios = dict(
-            zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True)
-        )
-        guess = {
-            w: posterior(r, chosen).log_evidence + case.log_prior(chosen, w) for w, r in scenarios.items()
-        }
-        scenario = max(guess, key=lambda w: guess[w])
-        about, part = scenarios[scenario], None
-    z = boxed(about, chosen, posterior(about, chosen)).z
-    return refine(case, chosen, scenario, z, (), part=part)[0]
 
 
 def _numbers(case: Case, found: Found) -> list[Number]:

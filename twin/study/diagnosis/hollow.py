@@ -1,0 +1,24 @@
+"""Whether a hypothesis holds an effect that is none: it would help only with sizes that cannot be."""
+
+import numpy as np
+
+from twin.study.diagnosis.altered import floats
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.refine import Found
+from twin.study.estimation.columns import Unknown
+
+
+def hollow(case: Case, found: Found) -> bool:
+    """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: the set
+    says no more than the rest."""
+    z = found.posterior.z
+    nothing = any(
+        not np.any(z[[i for i, u in enumerate(case.effects) if u.owner == name and _sizes(case, u)]])
+        for name in found.hypothesis.effects
+    )
+    return nothing or not floats(case, found)
+
+
+def _sizes(case: Case, u: Unknown) -> bool:
+    """Whether this number alone may be what its effect is."""
+    return case.catalogue[u.owner].size in ("", u.name)
