@@ -262,6 +262,16 @@ def test_an_added_number_and_its_interval_are_those_of_the_diagnosis():
     )
 
 
+def test_a_stream_that_may_change_is_fitted_when_asked_for_though_it_does_not_change(sailed, stream, kvlcc2):
+    """Test: a steady stream. Expected: beside another effect it is a steady one, and the one that may change
+    is kept where it is asked for by name."""
+    steady = [sailed(stream()).track]
+    beside = fitted(kvlcc2, [find("HullFouling")], steady)
+    assert {n.effect for n in beside.beside} == {"Current"}
+    asked = fitted(kvlcc2, [find("VaryingCurrent")], steady)
+    assert asked.names == ("VaryingCurrent",) and "Current" not in asked.found.hypothesis.effects
+
+
 def test_a_number_far_beyond_the_usual_was_not_kept_near_its_prior(make, kvlcc2):
     """Test: a screw that walks six times as hard as is usual. Expected: the voyage is said to tell it."""
     walk = find("PropellerWalk").absent(kvlcc2).but(c_y=0.06)

@@ -9,14 +9,15 @@ from twin.study.estimation.columns import Unknown
 
 
 def hollow(case: Case, found: Found) -> bool:
-    """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: the set
-    says no more than the rest."""
-    z = found.posterior.z
-    nothing = any(
-        not np.any(z[[i for i, u in enumerate(case.effects) if u.owner == name and _sizes(case, u)]])
-        for name in found.hypothesis.effects
-    )
-    return nothing or not floats(case, found)
+    """Whether an effect of this set ended at nothing, or is a load that cannot be: the set says no more than
+    the rest."""
+    return any(nothing(case, found, name) for name in found.hypothesis.effects) or not floats(case, found)
+
+
+def nothing(case: Case, found: Found, name: str) -> bool:
+    """Whether an effect of this set ended at nothing (or its size did)."""
+    own = [i for i, u in enumerate(case.effects) if u.owner == name and _sizes(case, u)]
+    return not np.any(found.posterior.z[own])
 
 
 def _sizes(case: Case, u: Unknown) -> bool:

@@ -5,7 +5,7 @@ number that `twin diagnose` told."""
 from collections.abc import Callable
 
 from twin.study.diagnosis.case import SCENARIOS, Case, visible
-from twin.study.diagnosis.hollow import hollow
+from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.open_loop_check import open_loop_check
 from twin.study.diagnosis.refine import Found, Sets, refine
 from twin.study.diagnosis.steady import simpler, steady
@@ -51,9 +51,10 @@ class WeatherSearch:
         about = part.reduced if part and part.reduced else self.scenarios[scenario]
         z = boxed(about, chosen, posterior(about, chosen)).z
         self.found[chosen] = found = refine(self.case, chosen, scenario, z, (), part=part)[0]
-        if steady(self.case, found):
-            self.first += [s for s in simpler(self.case, chosen) if s not in self.found]
-        elif chosen == self.names or not hollow(self.case, found):
+        swapped = [s for s in simpler(self.case, chosen) if set(self.names) <= set(s)]
+        if swapped and steady(self.case, found):
+            self.first += [s for s in swapped if s not in self.found]
+        elif not any(nothing(self.case, found, n) for n in chosen if n not in self.names):
             self.stand.append(chosen)
 
     def _likeliest_scenario(self, chosen: Sets) -> str:
