@@ -7,6 +7,7 @@ from twin.errors import DataError
 from twin.live.signals.channels import BY_NAME
 from twin.physics.ship import from_table, load, to_table
 from twin.recording.read import read_voyage
+from twin.recording.samples import spikes
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
 from twin.study.track.track import track
@@ -38,6 +39,30 @@ def test_a_table_with_the_channels_of_actuators_needs_no_rudder(tmp_path):
     text += "".join(f"{t},{t},0,0,{0.4 + 0.001 * t}\n" for t in TIME)
     (tmp_path / "v.csv").write_text(text)
     assert read_voyage(tmp_path / "v.csv").has("port.command")
+
+
+def test_an_angle_that_passes_ahead_goes_the_short_way_between_its_samples():
+    """Test: a pod that swings about ahead, shown as 0 to 360 deg every second, and a rudder beside it, both
+    brought to the times of every half second. Expected: no sample lies astern, the rudder stays on its side,
+    and nobody calls the passage a spike."""
+    seconds = np.arange(0.0, 300.0)
+    swing = 8.0 * np.sin(0.15 * seconds)
+    shown = Voyage(
+        "ferry",
+        seconds,
+        {
+            "north_m": seconds,
+            "east_m": 0.0 * seconds,
+            "heading_true_north_deg": 0.0 * seconds,
+            "pod.angle_deg": swing % 360.0,
+            "rudder.angle_deg": swing,
+        },
+    )
+    between = shown.on_grid(0.5)
+    assert np.cos(between.si("pod.angle_deg")).min() > 0.98
+    assert np.allclose(between["rudder.angle_deg"][::2], swing)
+    ahead = np.random.default_rng(1).normal(0.8, 0.3, 300) % 360.0  # now and then a little to port
+    assert spikes(ahead).size and not spikes(ahead, BY_NAME["pod.angle_deg"].period).size
 
 
 def test_what_is_no_channel_of_an_actuator_is_none():

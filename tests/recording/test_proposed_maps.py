@@ -8,7 +8,6 @@ import pytest
 
 from twin.errors import DataError
 from twin.recording.formats.actuator_guess import guess_actuator
-from twin.recording.formats.guess import guess
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_clock import clock_unit, text_format
@@ -166,13 +165,6 @@ def test_names_that_stand_twice_are_told_apart_by_their_groups(tmp_path):
 def test_whose_a_column_is_and_what(name, values, channel):
     found = guess_actuator(name, values)
     assert (found.channel if found else None) == channel
-
-
-def test_a_rate_is_in_no_knots_and_a_speed_in_no_turns():
-    assert guess("Propeller speed (rpm)").channel == "propeller_rate_rpm"
-    assert guess("app_wind_mps").channel == "apparent_wind_speed_mps" and guess("wind_s") is None
-    assert guess("wind (deg)").channel == "true_wind_direction_deg"
-    assert guess("Speed (kn)").channel == "speed_over_ground_mps" and guess("rate of turn (kn)") is None
 
 
 def test_a_table_of_readings_is_read_by_their_names(tmp_path):

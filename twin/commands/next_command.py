@@ -34,8 +34,11 @@ def after_instruments(voyages: Sequence[str], ship: str | None, output: str | No
 
 def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
     """The diagnosis; before it a calibration, where the ship never had one."""
-    calibrated = result["horizons"][-1]["noise_floor"]["of"] != "sensors"
-    by = ship if calibrated else "calibrated.toml"
+    by = (
+        ship
+        if (calibrated := result["horizons"][-1]["noise_floor"]["of"] != "sensors")
+        else "calibrated.toml"
+    )
     diagnose = f"twin diagnose {' '.join(voyages)} --ship {by} --report diagnose.html"
     return diagnose if calibrated else f"twin calibrate REFERENCE.mcap --ship {ship} -o {by}, then {diagnose}"
 
@@ -49,8 +52,9 @@ def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any])
         now = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
         now = f"twin diagnose {paths} OTHER-DAY.mcap --ship {ship}: voyages together tell more than one"
-    use = "; it is one more reference for twin calibrate" * (result["verdict"] == "nothing_missing")
-    return "; or now: ".join(filter(None, (sail, now))) + use
+    elif result["verdict"] == "nothing_missing":
+        now = f"twin diagnose OTHER-DAY.mcap --ship {ship}; what sailed so is good for twin calibrate, too"
+    return "; or now: ".join(filter(None, (sail, now)))
 
 
 def add_typed(args: argparse.Namespace) -> str:

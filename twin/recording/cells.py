@@ -10,7 +10,7 @@ from twin.errors import DataError
 from twin.live.signals.channels import BY_NAME
 from twin.recording.frames import from_ddmm
 from twin.recording.mapping import Column, Key, target
-from twin.recording.resample import continuous, wrapped
+from twin.recording.resample import continuous
 from twin.recording.samples import spikes
 from twin.recording.table import Table
 from twin.recording.units import factor
@@ -53,7 +53,7 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
     values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)
     if c.deviation:
         values = without_deviation(values, c.deviation)
-    if c.despike and (at := spikes(values, BY_NAME[name].wraps if name in BY_NAME else 0.0)).size:
+    if c.despike and (at := spikes(values, BY_NAME[name].period if name in BY_NAME else 0.0)).size:
         notes.append(f"{name}: {at.size} spikes blanked (first in line {table.lines[at[0]]})")
         values[at] = np.nan
     return values
@@ -158,8 +158,8 @@ def earlier(
     time_s: np.ndarray, values: np.ndarray, late_s: float, period: float, longest_s: float
 ) -> np.ndarray:
     """The same channel had its samples stood where they were true, `late_s` before their rows: lines
-    between its neighbours no more than `longest_s` apart, NaN outside. `time_s` and `values` (N,), the
-    values in their own unit."""
+    between its neighbours no more than `longest_s` apart, NaN outside; an angle (`period` > 0) without
+    jumps. `time_s` and `values` (N,), the values in their own unit."""
     known = np.flatnonzero(np.isfinite(values) & np.isfinite(time_s))
     out = np.full(values.shape, np.nan)
     if known.size < 2:
@@ -169,4 +169,4 @@ def earlier(
     after = np.clip(np.searchsorted(t, here), 1, t.size - 1)
     good = (here >= t[0]) & (here <= t[-1]) & (t[after] - t[after - 1] <= longest_s)
     out[known] = np.where(good, np.interp(here, t, x), np.nan)
-    return wrapped(out, period)
+    return out

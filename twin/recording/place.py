@@ -56,7 +56,7 @@ def _with(
 ) -> np.ndarray:
     """`values` of channel `name` wherever its partner was measured, NaN elsewhere."""
     ch, rows = BY_NAME[name], np.isfinite(partner)
-    near = beside(time_s, values, rows, ch.stale_s, ch.wraps if period is None else period)
+    near = beside(time_s, values, rows, ch.stale_s, ch.period if period is None else period)
     return np.where(rows, near, np.nan)
 
 

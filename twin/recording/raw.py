@@ -13,6 +13,7 @@ from twin.recording.formats import Format
 from twin.recording.formats.binary_tables import Packed
 from twin.recording.mapping import Key, Map, TimeColumn
 from twin.recording.place import FRAMED, no_latitude, placed, scaled
+from twin.recording.resample import wrapped
 from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
     TimeAxis,
@@ -49,7 +50,8 @@ def through(
     for name, c in by.columns.items():
         if c.late_s and name in columns:
             ch = BY_NAME.get(name, BY_NAME["north_m"])
-            columns[name] = earlier(clock.time_s, columns[name], c.late_s, ch.wraps, ch.stale_s)
+            shown = earlier(clock.time_s, columns[name], c.late_s, ch.period, ch.stale_s)
+            columns[name] = wrapped(shown, ch.wraps)
     notes = [*notes, *clock.notes]
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
     given = sorted(columns)

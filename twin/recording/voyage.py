@@ -154,13 +154,13 @@ class Voyage:
     def _on(self, grid: np.ndarray, step_s: float, ch: Channel, max_gap_s: float | None) -> np.ndarray:
         limit = max(ch.stale_s if max_gap_s is None else max_gap_s, 1.5 * step_s)
         hold = ch.stale_s if ch.stale_s >= SLOW_S else 0.0
-        values = continuous(self.columns[ch.name], ch.wraps)
+        values = continuous(self.columns[ch.name], ch.period)
         return wrapped(resampled(self.time_s, values, grid, step_s, limit, hold), ch.wraps)
 
     def si(self, name: str) -> np.ndarray:
         """(N,) in the units of physics (m, rad, m/s, rad/s, 1/s); angles that wrap come without jumps."""
         ch = channel(name)
-        return continuous(self[name], ch.wraps) * ch.to_si
+        return continuous(self[name], ch.period) * ch.to_si
 
     def with_rows(self, time_s: np.ndarray, columns: Mapping[str, np.ndarray]) -> "Voyage":
         """The same voyage (name, meta) with other samples. All (N,), in the unit in its name."""

@@ -10,13 +10,10 @@ import pytest
 
 from bench.small_boats import ship_of
 from twin.cli import main
-from twin.commands import story
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load, to_table
-from twin.recording.read import read_voyage
 from twin.recording.write import write_voyage
-from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
@@ -245,31 +242,6 @@ def test_held_out_voyages_and_cross_validation_exclude_each_other(verb, on_disk,
         tmp_path / "x.toml",
     )
     assert verb("add", "Current", *words) == 2
-
-
-def test_an_added_number_and_its_interval_are_those_of_the_diagnosis():
-    """Test: the growth on the bundled tanker. Expected: 0.32 to 0.34 with a quarter of doubt either way, by
-    both, to a hundredth of the interval; about another place than where the number was found its doubt had
-    been five times as large, and with another weather beside it its size another by a tenth."""
-    ship, voyage = load(story.SHIP), read_voyage(story.MONDAY)
-    (extra,) = fitted(ship, [find("HullFouling")], [track(voyage, ship)]).numbers
-    (said,) = next(
-        c["parameters"] for c in diagnose([voyage], ship).result["candidates"] if c["effect"] == "HullFouling"
-    )
-    close = 0.01 * (said["high95"] - said["low95"])
-    assert [extra.value, extra.low95, extra.high95] == pytest.approx(
-        [said[key] for key in ("value", "low95", "high95")], abs=close
-    )
-
-
-def test_a_stream_that_may_change_is_fitted_when_asked_for_though_it_does_not_change(sailed, stream, kvlcc2):
-    """Test: a steady stream. Expected: beside another effect it is a steady one, and the one that may change
-    is kept where it is asked for by name."""
-    steady = [sailed(stream()).track]
-    beside = fitted(kvlcc2, [find("HullFouling")], steady)
-    assert {n.effect for n in beside.beside} == {"Current"}
-    asked = fitted(kvlcc2, [find("VaryingCurrent")], steady)
-    assert asked.names == ("VaryingCurrent",) and "Current" not in asked.found.hypothesis.effects
 
 
 def test_a_number_far_beyond_the_usual_was_not_kept_near_its_prior(make, kvlcc2):

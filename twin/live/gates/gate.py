@@ -113,7 +113,7 @@ class Gate:
 
     def difference(self, value: float, before: float) -> float:
         """value - before, the short way round for an angle."""
-        period = self.channel.wraps
+        period = self.channel.period
         return (value - before + 0.5 * period) % period - 0.5 * period if period else value - before
 
     def _settle(self, value: float, t: float, way: float) -> Quality:

@@ -47,8 +47,8 @@ def along(base: np.ndarray, channel: Channel, stamps: np.ndarray, values: np.nda
         return np.full(base.shape, nan)
     if channel.stale_s >= SLOW_S:
         return _held(base, channel, stamps, values)
-    if channel.wraps:
-        values = np.unwrap(values, period=channel.wraps)
+    if channel.period:
+        values = np.unwrap(values, period=channel.period)
     line = np.interp(base, stamps, values, left=nan, right=nan)
     line[_in_gap(base, stamps, channel.stale_s)] = nan
     return np.mod(line, channel.wraps) if channel.wraps else line

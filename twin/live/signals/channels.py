@@ -27,8 +27,14 @@ class Channel:
     high: float
     max_rate: float = inf
     stale_s: float = 5.0
-    wraps: float = 0.0  # period of an angle, 0 for a number on the line
+    wraps: float = 0.0  # period of a direction, 0 for a number on the line
+    turn: float = 0.0  # period of an actuator's angle: shown on any turn, and kept on the one that is shown
     doc: str = ""
+
+    @property
+    def period(self) -> float:
+        """By how much two readings of one angle may differ; 0 for a number on the line."""
+        return self.wraps or self.turn
 
 
 DEG = pi / 180.0
@@ -141,7 +147,8 @@ class ByName(dict[str, Channel]):
             raise KeyError(name)
         owner, _, last = name.rpartition(".")
         c = CHANNELS_OF[last]
-        return Channel(name, attribute_of(name), c.to_si, c.low, c.high, doc=f"{owner}: {c.doc}")
+        doc = f"{owner}: {c.doc}"
+        return Channel(name, attribute_of(name), c.to_si, c.low, c.high, turn=c.turn, doc=doc)
 
     def get(self, name: str, default: Any = None) -> Any:
         """The channel of that name, else `default`."""

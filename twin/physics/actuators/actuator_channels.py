@@ -4,6 +4,7 @@ from math import pi
 from typing import NamedTuple
 
 DEG = pi / 180.0
+ANGLE = "angle: see the actuator's kind"
 
 
 class ActuatorChannel(NamedTuple):
@@ -15,6 +16,7 @@ class ActuatorChannel(NamedTuple):
     high: float
     doc: str
     unit: str
+    turn: float = 0.0  # of an angle: by how much two readings of one direction may differ
 
 
 CHANNELS_OF: dict[str, ActuatorChannel] = {
@@ -25,8 +27,8 @@ CHANNELS_OF: dict[str, ActuatorChannel] = {
     "rate_rpm": ActuatorChannel("rate", 1.0 / 60.0, -20000.0, 20000.0, "turns, positive ahead", "1/min"),
     "rate_rev_s": ActuatorChannel("rate", 1.0, -330.0, 330.0, "turns, positive ahead", "1/s"),
     "thrust_n": ActuatorChannel("thrust", 1.0, -1e7, 1e7, "thrust, positive ahead", "N"),
-    "angle_deg": ActuatorChannel("angle", DEG, -720.0, 720.0, "angle: see the actuator's kind", "deg"),
-    "angle_rad": ActuatorChannel("angle", 1.0, -13.0, 13.0, "angle: see the actuator's kind", "rad"),
+    "angle_deg": ActuatorChannel("angle", DEG, -720.0, 720.0, ANGLE, "deg", 360.0),
+    "angle_rad": ActuatorChannel("angle", 1.0, -13.0, 13.0, ANGLE, "rad", 2.0 * pi),
     "pitch_ratio": ActuatorChannel("pitch", 1.0, -2.5, 2.5, "pitch over diameter, positive ahead", "-"),
 }
 DRIVES = ("command", "pwm", "rate", "thrust")  # one of them says how hard it pushes

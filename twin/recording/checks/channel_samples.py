@@ -72,7 +72,7 @@ def spikes(view: VoyageView) -> Check:
     found = []
     for name in (n for n in view.voyage.columns if n not in JUMPY):
         values = view.voyage.columns[name]
-        rows = spike_rows(values, BY_NAME[name].wraps)
+        rows = spike_rows(values, BY_NAME[name].period)
         if rows.size:
             i = int(rows[0])
             found.append(

@@ -183,7 +183,8 @@ RULES: tuple[GuessRule, ...] = (
     ),
     *_rules(
         "true_wind_direction_deg",
-        "twd,true wind direction,wind direction true,wind direction,mwd,wind true direction",
+        "twd,true wind direction,wind direction true,wind direction,mwd,wind true direction,true wind from,"
+        "wind from",
         "apparent relative rel speed velocity",
     ),
     *_rules(
@@ -195,7 +196,8 @@ RULES: tuple[GuessRule, ...] = (
         "apparent_wind_angle_deg",
         "awa,apparent wind angle,relative wind angle,wind angle apparent,wind direction relative,"
         "apparent wind direction,relative wind direction,rwd,wind angle relative,wind direction rel,"
-        "wind angle,rel wind direction,rel wind angle,wind direction apparent",
+        "wind angle,rel wind direction,rel wind angle,wind direction apparent,relative wind from,rel wind from,"
+        "apparent wind from",
         "true",
     ),
     *_rules("water_depth_m", "depth,water depth,dpt,dbt,dbs,sounding", "draught sensor"),

@@ -77,7 +77,7 @@ ENGLISH: dict[str, str] = {
     "centre": "center", "middle": "center", "winkel": "angle", "vinkel": "angle", "hdgt": "hdt",
     "spd": "speed", "dir": "direction", "ang": "angle", "vel": "velocity", "velo": "velocity",
     "app": "apparent", "appar": "apparent", "lin": "linear", "pos": "position", "thr": "thruster",
-    "temps": "time",
+    "temps": "time", "anemo": "wind", "anemometer": "wind",
 }  # fmt: skip
 
 

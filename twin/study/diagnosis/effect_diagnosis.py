@@ -147,9 +147,9 @@ def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
     return {
         "not_judged": _not_possible(case),
         "weather": [
-            _weather(case, told.weighed, told.found, name, share)
+            _weather(told, name, share)
             for name, share in told.weights.weather.items()
-            if share >= SOME
+            if share >= SOME or (told.causes and name in told.shown)
         ],
         "as_on_references": list(as_before),
         "not_visible": too_small(told.seen, told_already),
@@ -223,12 +223,12 @@ def _without(case: Case, found: Mapping[Sets, Found], considered: Considered, na
     return found[() if name in case.weather else considered.base].open_loop_error_m
 
 
-def _weather(
-    case: Case, weighed: Sequence[Any], found: Mapping[Sets, Found], name: str, probability: float
-) -> dict[str, Any]:
-    """One kind of today's water and weather, with its numbers, as it stands in the likeliest set that holds
-    it; or how restless the water is."""
+def _weather(told: SearchAnswer, name: str, probability: float) -> dict[str, Any]:
+    """One kind of today's water and weather, with its numbers, as it stands beside what is named, else in the
+    likeliest set that holds it; or how restless the water is."""
+    case, weighed, found = told.case, told.weighed, told.found
     sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
+    sets = [told.shown, *sets] if told.causes and name in told.shown else sets
     best = (
         found[sets[0]]
         if sets and (name in weighed[0].effects or not restless_water(case, weighed[0]))

@@ -6,6 +6,7 @@ from typing import Any
 from twin.num import clock, num, percent
 from twin.study.diagnosis.acting import acting
 from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER, SIGNIFICANT
+from twin.study.diagnosis.force_in_words import force
 
 Result = dict[str, Any]
 SMALL = "The open-loop error of these voyages does not fall with it: `twin add` may ask for more voyages."
@@ -15,18 +16,29 @@ ROUGHLY = "in weather like this, whose force is known only roughly, that may be 
 def named(result: Result) -> str:
     """Effects are named, with their force and what cannot be told from them."""
     names = [n for n in result["missing"] if not _is_weather(result, n)]
-    first, beside = by_name(result)[names[0]], result["resembles"]
-    size = f" Typically {force(first['typical_force'])}." if force(first["typical_force"]) else ""
-    rivals = [likely(result, n) for n in first["cannot_be_told_from"]]
-    doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
-    small = f" {SMALL}" if size and len(names) == 1 and not nearer(first) else ""
+    first, said = by_name(result)[names[0]], [_said(result, n) for n in names]
+    what = said[0] if len(said) == 1 else " ".join(f"{n}: {s}" for n, s in zip(names, said, strict=True))
+    small = f" {SMALL}" if force(first["typical_force"]) and len(names) == 1 and not nearer(first) else ""
     more = "".join(
-        f" Something like {c['effect']} acts beside it, or it acts in another form than the catalogue's."
-        for c in beside
+        f" Something like {c['effect']} ({percent(c['probability'])}) may act beside it, or it acts in "
+        "another form than the catalogue's."
+        for c in result["resembles"]
     )
     return (
         f"Missing: {' and '.join(likely(result, n) for n in names)}. "
-        f"{first['says']}{size}{doubt}{small}{further_in_words(result, names)}{more}{_more(result)}"
+        f"{what}{small}{further_in_words(result, names)}{more}{_more(result)}"
+    )
+
+
+def _said(result: Result, name: str) -> str:
+    """What a named effect does, its force, and what it cannot be told from."""
+    cause = by_name(result)[name]
+    size = f" Typically {force(cause['typical_force'])}." if force(cause["typical_force"]) else ""
+    rivals = [likely(result, n) for n in cause["cannot_be_told_from"]]
+    return (
+        cause["says"]
+        + size
+        + (f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else "")
     )
 
 
@@ -234,16 +246,6 @@ def nearer(candidate: Result) -> bool:
     return candidate["error_with"] is not None and bool(candidate["error_with"] < candidate["error_without"])
 
 
-def force(forces: Result) -> str:
-    """The components that are there, in words."""
-    there = {key: forces[key] for key in ("X_N", "Y_N", "N_Nm")}
-    return ", ".join(
-        f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}"
-        for key, value in there.items()
-        if abs(value) > 1e-9
-    )
-
-
 def when(m: Result) -> str:
     """From when to when on which voyage."""
     return f"from {clock(m['start_s'])} to {clock(m['end_s'])} on {m['voyage']}"
@@ -283,11 +285,3 @@ def _error(result: Result) -> str:
         f"went ({num(path['error_floor'], 3)} m "
         "is expected of this calibrated ship)"
     )
-
-
-def _si(value: float, unit: str) -> str:
-    """A size with the prefix that engineers use."""
-    for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
-        if abs(value) >= factor:
-            return f"{num(value / factor, 3)} {prefix}{unit}"
-    return f"{num(value, 3)} {unit}"

@@ -6,6 +6,7 @@ from twin.num import as_given, clock, num, percent, readable
 from twin.recording.checks import whose
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.against_healthy import healthy_in_words
+from twin.study.diagnosis.force_in_words import force as in_words
 from twin.study.diagnosis.overtime import changes
 from twin.study.diagnosis.set_and_rate import stream_in_words
 from twin.study.estimation.start import waves_in_words
@@ -86,12 +87,12 @@ def _numbers(weather: dict[str, Any]) -> str:
         for p in map(readable, weather["parameters"])
         if abs(p["value"]) > 0.0
     )
-    pushed = say.force(weather["typical_force"]) if weather["typical_force"] else ""
+    pushed = in_words(weather["typical_force"]) if weather["typical_force"] else ""
     return f"{numbers}; typically {pushed}" if pushed else numbers
 
 
 def _moment(m: dict[str, Any]) -> str:
-    return f"{say.when(m)} a force pushed the ship that was not there before or after: {say.force(m)}"
+    return f"{say.when(m)} a force pushed the ship that was not there before or after: {in_words(m)}"
 
 
 def candidate_lines(c: dict[str, Any]) -> list[str]:
@@ -101,8 +102,8 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head, *_sizes(c)]
     force = c["typical_force"]
-    if say.force(force) and not c.get("stream"):
-        lines.append(f"          typically    {say.force(force)}")
+    if in_words(force) and not c.get("stream"):
+        lines.append(f"          typically    {in_words(force)}")
     expected = (
         f" ({num(c['error_floor'], 3)} m is expected even with the right cause)"
         if c["error_floor"] is not None
