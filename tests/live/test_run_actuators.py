@@ -4,7 +4,7 @@ voyage replays."""
 import json
 import subprocess
 import sys
-from math import degrees, hypot
+from math import cos, degrees, hypot, radians, sin
 
 import numpy as np
 import pytest
@@ -151,6 +151,19 @@ def test_an_azimuth_that_goes_through_astern_does_not_jump(make):
     service.run(3.0, lambda said: said | {"port.angle_deg": 179.0})
     tick = service.run(0.1, lambda said: said | {"port.angle_deg": -179.0})
     assert shown(tick)["port.angle_deg"].value == -179.0
+
+
+def test_a_slow_azimuth_that_passes_ahead_is_not_thought_to_swing_round_astern(make):
+    """Test: an azimuth that turns with a time constant of half a second is shown at 358 and then at 2 deg.
+    Expected: the physics turns it by 4 deg through ahead."""
+    service = make(*PODS, effects={"ActuatorLag.port": {"delay": 0.0, "ease": 0.5}})
+    service.run(6.0, lambda said: said | {"port.angle_deg": 358.0})
+    seen = []
+    for _ in range(10):
+        service.run(0.1, lambda said: said | {"port.angle_deg": 2.0})
+        seen.append(service.loop.last.situation.orders["port.angle"])
+    assert min(cos(angle) for angle in seen) > cos(radians(2.5))
+    assert sin(seen[0]) < 0.0 < sin(seen[-1])
 
 
 def test_an_actuator_that_answers_late_is_where_its_order_was(make):

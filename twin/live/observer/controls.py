@@ -2,6 +2,7 @@
 where each stands until somebody has told."""
 
 from collections.abc import Mapping
+from math import remainder
 
 from twin.live.signals.channels import BY_NAME
 from twin.physics.actuators.helm import actuator_orders
@@ -26,6 +27,13 @@ def actuator_channels(ship: Ship) -> tuple[str, ...]:
 def at_rest(ship: Ship) -> dict[str, float]:
     """What actuators are told that give nothing, by `name.attribute` [SI]; of a ship without any {}."""
     return {k: float(x) for k, x in actuator_orders(ship, 0.0, 0.0).items()} if ship.actuators else {}
+
+
+def nearest_turn(channel: str, value: float, before: float) -> float:
+    """An actuator's angle on the turn that is nearest to where it stood before (a pod that goes from 359 to
+    1 deg does not swing round astern); any other control as it is. All in SI."""
+    turn = BY_NAME[channel].turn * BY_NAME[channel].to_si
+    return before + remainder(value - before, turn) if turn else value
 
 
 def with_measured_controls(s: Situation, si: Mapping[str, float]) -> None:

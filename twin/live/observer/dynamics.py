@@ -6,7 +6,7 @@ where it is now, and without those effects whose inputs nobody measures.
 
 from collections.abc import Sequence
 
-from twin.live.observer.controls import at_rest, controls_of, with_measured_controls
+from twin.live.observer.controls import at_rest, controls_of, nearest_turn, with_measured_controls
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.steering import Gear, Steering, gears_of
 from twin.live.signals.measured import Measured
@@ -117,7 +117,7 @@ class Dynamics:
         self.full = Model(ship, tuple(e for e in ship.effects if e not in streams))
         self.off: tuple[Effect, ...] = ()  # effects without their inputs
         self.held: dict[str, float] = {}  # controls whose feedback is lost, at their last value [SI]
-        self._names = tuple(controls_of(ship))
+        self._names = controls_of(ship)
         self._controls: dict[str, float] = {}  # the last that was measured of each
         self.now = KnownDynamics(self.full, self.first_current)
         self._needed = sorted({need for e in self.full.effects for need in e.needs if need in WEATHER})
@@ -173,9 +173,10 @@ class Dynamics:
 
     def _hold(self, si: dict[str, float]) -> None:
         """A lost feedback does not stop engine, rudder or actuator."""
-        for name in self._names:
+        for name, channel in self._names.items():
             if name in si:
-                self._controls[name] = si[name]
+                before = self._controls.get(name, si[name])
+                self._controls[name] = nearest_turn(channel, si[name], before)
                 self.held.pop(name, None)
             elif name in self._controls:
                 self.held[name] = self._controls[name]

@@ -110,8 +110,7 @@ def one_of(result: Result) -> str:
         f"something like {n}" if n in known_by_form else likely(result, n) for n in result["one_of"]
     ]
     return (
-        f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them "
-        "apart."
+        f"Undecided: probably {', '.join(others)} or {last} is missing; these voyages cannot tell them apart."
     )
 
 

@@ -21,11 +21,10 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
     resembling = [line for c in result["resembles"] for line in candidate_lines(c)]
     known = [line for c in result["candidates"] for line in candidate_lines(c) + _not_named(c, result)]
-    if result["verdict"] == "missing":
-        lines += known + resembling
+    if result["verdict"] == "unknown":
+        lines += [*resembling, *(["if it is one of the known effects:"] if known else []), *known]
     else:
-        only_if = ["if it is one of the known effects:"] if result["verdict"] == "unknown" and known else []
-        lines += resembling + only_if + known
+        lines += known + resembling
     weather = weather_lines(result)
     lines += weather if lines[-1] else weather[1:]
     nothing, unknown = (percent(result["probabilities"][k]) for k in ("nothing_missing", "unknown"))
