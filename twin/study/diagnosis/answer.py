@@ -10,6 +10,7 @@ from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics,
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.consider import Considered, consider
 from twin.study.diagnosis.decision import Decision, decide
+from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.open_loop_check import OpenLoopCheck
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.search import search
@@ -53,10 +54,18 @@ class SearchAnswer:
         if self.joined:
             return self.joined
         named, causes = set(self.decision.missing), set(self.causes)
-        wide = [h.effects for h in self.weighed if h.effects in self.found and named <= set(h.effects)]
-        exact = [s for s in wide if set(self.case.causes(s)) == causes and not self.found[s].steady]
-        own = {s: self.path.with_path(self.found[s].hypothesis).log_weight for s in exact}
-        return max(own, key=lambda s: own[s], default=next(iter(wide), self.weights.best.effects))
+        own = {
+            s: self.path.with_path(f.hypothesis).log_weight
+            for s, f in self.found.items()
+            if named <= set(s) and set(self.case.causes(s)) == causes and self._stands(f)
+        }
+        wide = (h.effects for h in self.weighed if h.effects in self.found and named <= set(h.effects))
+        return max(own, key=lambda s: own[s], default=next(wide, self.weights.best.effects))
+
+    def _stands(self, found: Found) -> bool:
+        """Whether no weather of a set is none, or needs no more than a simpler one."""
+        day = self.case.day(found.hypothesis.effects)
+        return not found.steady and not any(nothing(self.case, found, name) for name in day)
 
 
 def answer(

@@ -25,6 +25,7 @@ from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.set_and_rate import set_and_rate
+from twin.study.diagnosis.tell_diagnosis import SOME
 from twin.study.diagnosis.verdict import (
     alike,
     capped,
@@ -40,7 +41,6 @@ from twin.study.track.jumps import jumps_on
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST_PROBABILITY likely, and no more than this
 LEAST_PROBABILITY = 0.05
-SOME = 0.5  # probability from which a kind of weather is told
 
 
 @dataclass(frozen=True)
@@ -210,10 +210,10 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
 def _own_set(told: SearchAnswer, name: str) -> Sets | None:
     """The set with whose numbers an effect is told: the answer where it is named, else the likeliest that was
     relinearised and holds it."""
+    if name in told.decision.missing and name in told.shown and told.shown in told.found:
+        return told.shown
     sets = [h.effects for h in told.weighed if name in h.effects and h.effects in told.found]
     sets = sets or [s for s in told.found if name in s]  # where it stands at a size that cannot be
-    if name in told.decision.missing and told.shown in sets:
-        return told.shown
     return sets[0] if sets else None
 
 

@@ -198,7 +198,8 @@ def why_not(c: Result, reason: str) -> str:
         "not_in_explanation": "the explanation that leaves least does without it",
         "as_on_references": "single causes explained as much of healthy reference voyages of this ship"
         if c.get("on_references") is None
-        else "position, velocity, heading and rate of turn go together as on the reference voyages",
+        else "the instruments, held against each other without the ship, show no more of it than on the "
+        "reference voyages (twin instruments tells what they show)",
         "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
         f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
         "true)",

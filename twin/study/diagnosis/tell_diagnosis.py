@@ -13,6 +13,7 @@ from twin.study.estimation.start import waves_in_words
 from twin.study.track.jumps import jumps_in_words
 
 PUSHED = 3  # moments that are told
+SOME = 0.5  # probability from which a kind of weather is more than what any day brings
 
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
@@ -66,7 +67,10 @@ def weather_lines(result: dict[str, Any]) -> list[str]:
     if not result["weather"]:
         return []
     lines = ["", "today's water and wind:"]
-    lines += [f"{percent(w['probability']):>6}  {w['effect']}: {_numbers(w)}" for w in result["weather"]]
+    for w in result["weather"]:
+        likely = w["probability"] >= SOME
+        usual = "" if likely else " (allowed for: no more than any day brings)"
+        lines.append(f"{percent(w['probability']) if likely else '':>6}  {w['effect']}: {_numbers(w)}{usual}")
     path, causes = result["path"], result["candidates"] + result["resembles"]
     if path["error_without"] is not None and not causes:
         lines.append(
