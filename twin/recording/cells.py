@@ -49,6 +49,10 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
     """One channel with its sign, unit, offset and direction as docs/import.md has them (not yet its "
     "frame). (N,) in the channel's unit."""
     values = raw(table, c)
+    notes += [
+        f"{name}: {key} is the same number in every row, while what it is added to is not: a dead sensor?"
+        for key in _still(table, c)
+    ]
     scale = 1.0 if c.unit in PLAIN_UNITS else factor(target(name, c), c.unit or "", where)
     values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)
     if c.deviation:
@@ -76,6 +80,15 @@ def raw(table: Table, c: Column) -> np.ndarray:
         south = np.array([text[:1] in NEGATIVE for text in table.texts[c.hemisphere]])
         values = np.where(south, -np.abs(values), np.abs(values))
     return values
+
+
+def _still(table: Table, c: Column) -> list[Key]:
+    """The columns of a sum that never change where another one does."""
+    if c.is_text or len(c.parts) < 2 or c.unit in ("quaternion", "quaternion_enu"):
+        return []
+    told = {key: x[np.isfinite(x)] for key in c.parts for x in (table.numbers[key],)}
+    still = [key for key, x in told.items() if x.size and np.all(x == x[0])]
+    return still if len(still) < len(told) else []
 
 
 def sum_of(columns: list[np.ndarray], factors: tuple[float, ...]) -> np.ndarray:

@@ -105,7 +105,9 @@ def terminal_lines(found: Instruments, effects: Sequence[Effect] = ()) -> list[s
     out += ["", "not seen (95 %: less than)"] + [
         f"  {e.unknown.meaning}: {_limit(e)}" for e in unseen if e.known
     ]
-    out += _unknown(found, [e for e in found.estimates if not e.known])
+    out += _unknown(
+        found, [e for e in found.estimates if not e.known and e.unknown.fault not in found.faults]
+    )
     untold = [
         f.words for name, f in FAULTS.items() if name not in (*ALWAYS, found.clock, *found.log_bayes_factors)
     ]
@@ -146,6 +148,14 @@ def _fault(found: Instruments, fault: str) -> list[str]:
         out.append(
             f"  or, in its place: {', '.join(FAULTS[x].words for x in found.instead[fault])} (these "
             "voyages do not tell which)"
+        )
+    if untold := [e.unknown.meaning for e in numbers if not e.known]:
+        out += textwrap.wrap(
+            "only if nothing else is wrong: beside all other faults these voyages do not tell "
+            f"{', '.join(untold)} (sail {f.turn})",
+            110,
+            initial_indent="  ",
+            subsequent_indent="    ",
         )
     falls = [f"{k} {amount(a, READ[k])} -> {amount(b, READ[k])}" for k, (a, b) in found.falls[fault].items()]
     return out + ([f"  shown by the residuals of {', '.join(falls)}"] if falls else [])
