@@ -13,7 +13,7 @@ from twin.physics.state import Force
 from twin.study.diagnosis import moments as moment_of
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.effect_diagnosis import diagnose
-from twin.study.diagnosis.moments import PUSH_LOG_BAYES, Moment, moments, stretches
+from twin.study.diagnosis.moments import PUSH_LOG_BAYES, Moment, joined, moments, stretches
 from twin.study.diagnosis.refine import Found, refine
 from twin.study.diagnosis.tell_diagnosis import terminal_lines
 from twin.study.estimation.columns import Unknown
@@ -34,6 +34,24 @@ def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(case_of):
         and min(m.start_s for m in asked) < 60.0
         and max(m.end_s for m in asked) > 1100.0
     )
+
+
+def test_a_push_that_goes_on_is_one_and_one_of_another_direction_or_later_is_not():
+    """By hand: 60 s at 1 and 30 s at 0.7 are 90 s at 0.9."""
+
+    def push(start, end, *force, voyage="v"):
+        return Moment(voyage, start, end, 20.0, np.array(force))
+
+    first, next_one = push(0.0, 60.0, 1.0, 0.0, 0.0), push(61.0, 91.0, 0.7, 0.0, 0.0)
+    (whole,) = joined([next_one, first])
+    assert (whole.start_s, whole.end_s, whole.log_evidence) == (0.0, 91.0, 40.0)
+    assert np.allclose(whole.push, (0.9, 0.0, 0.0))
+    for other in (
+        push(61.0, 91.0, -0.7, 0.0, 0.0),
+        push(90.0, 120.0, 0.7, 0.0, 0.0),
+        push(61.0, 91.0, 0.7, 0.0, 0.0, voyage="w"),
+    ):
+        assert len(joined([first, other])) == 2
 
 
 def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(case_of):

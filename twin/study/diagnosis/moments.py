@@ -28,6 +28,8 @@ from twin.study.track.segments import segments
 LENGTHS = (1.0, 2.0, 4.0, 8.0, 16.0)
 PUSH_LOG_BAYES = 15.0  # log evidence, tempered, that a push of its own must add
 IN_WAVES = 30.0  # and where waves toss it: a group of them pushes, too
+GAP = 0.1  # of the shorter of two stretches, between them, that is none
+SAME_WAY = 0.5  # cosine between two pushes, in standard accelerations, that are one which goes on
 SWELL_S = 25.0  # the longest waves; what swings it more slowly may be what is asked for
 
 
@@ -58,7 +60,7 @@ class Moment:
 
 def moments(case: Case, found: Found) -> list[Moment]:
     """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that
-    overlaps a likelier one."""
+    overlaps a likelier one, and those that follow each other as one."""
     out: list[Moment] = []
     enough = {t.name: IN_WAVES if 0.0 < wave_period_s(t) < SWELL_S else PUSH_LOG_BAYES for t in case.tracks}
     for m in sorted(stretches(case, found), key=lambda m: -m.log_evidence):
@@ -66,7 +68,29 @@ def moments(case: Case, found: Found) -> list[Moment]:
             m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out
         ):
             out.append(m)
+    return sorted(joined(out), key=lambda m: -m.log_evidence)
+
+
+def joined(found: Sequence[Moment]) -> list[Moment]:
+    """The same, with those that follow each other and push the same way as one: a push that lasts longer than
+    a segment. The push of the whole is their mean over time."""
+    out: list[Moment] = []
+    for m in sorted(found, key=lambda m: (m.voyage, m.start_s)):
+        if out and _goes_on(out[-1], m):
+            before = out.pop()
+            lasts = np.array([before.end_s - before.start_s, m.end_s - m.start_s])
+            push = lasts @ np.array([before.push, m.push]) / lasts.sum()
+            gained = before.log_evidence + m.log_evidence
+            m = Moment(m.voyage, before.start_s, m.end_s, gained, push)
+        out.append(m)
     return out
+
+
+def _goes_on(before: Moment, after: Moment) -> bool:
+    apart = after.start_s - before.end_s
+    shorter = min(m.end_s - m.start_s for m in (before, after))
+    along = float(before.push @ after.push) / float(np.linalg.norm(before.push) * np.linalg.norm(after.push))
+    return before.voyage == after.voyage and apart <= GAP * shorter and along > SAME_WAY
 
 
 def stretches(case: Case, found: Found) -> list[Moment]:
