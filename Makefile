@@ -30,9 +30,9 @@ tests: budget others  ## pytest: what is inside its budget, alone; then the rest
 budget: $(VENV)/.development
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 
-# two processes more than cores, for tests of the service wait, and so do those that start commands; four at most
+# three processes more than cores, for tests of the service wait, and so do those that start commands; five at most
 SIDE_BY_SIDE = OMP_NUM_THREADS=1 $(BIN)/python -m pytest --dist loadfile -n \
-	$$($(BIN)/python -c "import os; print(min(4, os.cpu_count() + 2))")
+	$$($(BIN)/python -c "import os; print(min(5, os.cpu_count() + 3))")
 
 others: $(VENV)/.development
 	$(SIDE_BY_SIDE) --ignore tests/bench/test_tick.py

@@ -34,13 +34,9 @@ def after_instruments(voyages: Sequence[str], ship: str | None, output: str | No
 
 def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
     """The diagnosis; before it a calibration, where the ship never had one."""
-    by = (
-        ship
-        if (calibrated := result["horizons"][-1]["noise_floor"]["of"] != "sensors")
-        else "calibrated.toml"
-    )
+    by = ship if result["horizons"][-1]["noise_floor"]["of"] != "sensors" else "calibrated.toml"
     diagnose = f"twin diagnose {' '.join(voyages)} --ship {by} --report diagnose.html"
-    return diagnose if calibrated else f"twin calibrate REFERENCE.mcap --ship {ship} -o {by}, then {diagnose}"
+    return diagnose if by == ship else f"twin calibrate REFERENCE.mcap --ship {ship} -o {by}, then {diagnose}"
 
 
 def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
