@@ -8,10 +8,10 @@ from twin.study.diagnosis.case import SCENARIOS, Case, visible
 from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.open_loop_check import open_loop_check
 from twin.study.diagnosis.refine import Found, Sets, refine
+from twin.study.diagnosis.search import CLOSE
 from twin.study.diagnosis.steady import simpler, steady
 from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_with
 
-CLOSE = 3.0  # log odds behind, to first order, within which one of these is judged where it would stand
 TRIED = 2  # kinds of weather beside each set, the likeliest to first order
 
 
