@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.thorough import thorough
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 
@@ -25,6 +26,7 @@ def story():
     return runpy.run_path(str(PAGE)) | {"figures": len(pyplot.get_fignums())}
 
 
+@thorough
 def test_growth_is_named_and_the_error_falls_where_it_was_not_fitted(story):
     found, better = story["found"], story["better"]
     assert found.verdict == "missing" and found.effects == ["HullFouling"]

@@ -2,11 +2,13 @@
 
 from bench.decisions.__main__ import decided, kept_answer
 from bench.decisions.question import KnownCase
+from tests.thorough import thorough
 from twin.commands.story import MONDAY, SHIP
 from twin.physics.ship import load
 from twin.recording.read import read_voyage
 
 
+@thorough
 def test_a_kept_search_gives_the_same_answer_again(tmp_path):
     """Test: the first ten minutes of Monday. Expected: the same verdict, reason and names, from the search alone."""
     truth = {"hidden": {"HullFouling": 1.0}}

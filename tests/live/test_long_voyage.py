@@ -121,6 +121,7 @@ VOYAGES = {  # ship, position, heading, what has been sailed before: beyond ever
 }
 
 
+@thorough
 @pytest.mark.parametrize("name", one_of(VOYAGES))
 def test_I20_a_chart_that_goes_along_disturbs_nothing_that_is_said(name, make_service):
     """Test: five minutes with several moves, then half a minute without log and without compass, gyro and course

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from tests.thorough import one_of
+from tests.thorough import one_of, thorough
 
 LOUD = {"north_m": 3.0, "heading_true_north_deg": 0.5, "surge_velocity_mps": 0.3, "yaw_rate_degps": 0.03}
 
@@ -37,7 +37,7 @@ def test_I21_ten_times_the_noise_weighs_less_and_is_said_within_ten_seconds(make
     "name, by, state, most",
     [
         ("yaw_rate_degps", 0.1, "yaw_rate_degps", 0.1),
-        ("surge_velocity_through_water_mps", 0.5, "surge_velocity_mps", 0.2),
+        pytest.param("surge_velocity_through_water_mps", 0.5, "surge_velocity_mps", 0.2, marks=thorough),
     ],
 )
 def test_I22_a_constant_offset_of_gyro_or_log_is_said_and_the_estimate_stays_within_it(

@@ -61,6 +61,7 @@ def test_the_sway_of_beam_seas_is_no_noise_of_the_log(rows, hz):
     assert loud_ticks(rows, hz) == []
 
 
+@thorough
 @pytest.mark.parametrize("hz", one_of((5, 10)))
 def test_a_log_that_becomes_noisy_in_beam_seas_is_called_so_soon(rows, hz):
     """Test: 0.5 m/s of noise on both axes of the log, the boat beam on. Expected: said within 20 s, of the log alone,

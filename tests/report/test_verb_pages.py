@@ -10,6 +10,7 @@ import pytest
 import twin
 from tests.report import pages
 from tests.report.boat import straight_with_a_turn
+from tests.thorough import thorough
 from twin import cli
 from twin.commands.story import MONDAY, SHIP
 from twin.live.replay_record import MOMENTS_KEPT, SPANS, Kept, Spans
@@ -234,6 +235,7 @@ def test_any_numbers_make_a_drawing_whose_points_are_inside_it(values):
             assert 0.0 <= x <= wide and 0.0 <= y <= high
 
 
+@thorough
 def test_the_page_of_a_diagnosis_expects_of_the_ship_what_compare_expects(tmp_path):
     """Test: Monday's diagnosis as a page, and compare of the same voyage. Expected: the same expected errors."""
     ship, monday = twin.Ship.load(SHIP), twin.read_voyage(MONDAY)

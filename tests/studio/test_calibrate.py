@@ -15,6 +15,7 @@ import twin
 from bench.bundled import recorded
 from bench.reference import SeaCase, simulate
 from tests.studio.by_mouse import OVER, answer, ended, go, opened, press, shown, typed
+from tests.thorough import thorough
 from twin.errors import SettingsError
 from twin.recording.write import write_voyage
 from twin.studio.jobs import Jobs, born
@@ -77,6 +78,7 @@ def test_a_cancelled_calibration_leaves_every_file_as_it_was_and_says_so(page, p
     assert not page.said
 
 
+@thorough
 def test_a_calibration_by_mouse_is_that_of_the_command_line(page, project, tmp_path):
     """Test: the two reference voyages fitted, the third held out. Expected: steps told while it works; the error
     before and after, every number of it and the ship file are those of the command beside them."""
@@ -110,6 +112,7 @@ def test_a_calibration_by_mouse_is_that_of_the_command_line(page, project, tmp_p
 WRITES = """
 import sys, time, pathlib
 from twin.studio.last_step import last_step
+from tests.thorough import thorough
 last_step("new.toml")
 print("writing", flush=True)
 time.sleep(0.5)

@@ -60,6 +60,7 @@ def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(case_of):
     assert moments(case, known) == []
 
 
+@thorough
 def test_what_a_late_receiver_showed_of_before_the_recording_is_no_push_at_its_end(make, kvlcc2):
     """Test: a receiver 20 s late, as its model knows, on a voyage that begins in a turn. Expected: its last stretches
     are no likelier with a push (before, the errors of its first 20 s stood there: a log Bayes factor of 3.4)."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.thorough import thorough
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.study.estimation.columns import core_unknowns
@@ -124,6 +125,7 @@ def test_how_far_the_heading_that_a_compass_shows_strays_is_found(judged, wander
     assert found < 4e-4 if wander == 0.0 else found == pytest.approx(wander, rel=0.35)
 
 
+@thorough
 def test_a_receiver_that_errs_moves_the_place_that_it_shows(judged):
     """Test: a place and a velocity over ground with one error of 0.15 m/s that lasts 8 s. Expected: the ship is not
     tossed by it, and what errs is found within half."""

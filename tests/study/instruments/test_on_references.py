@@ -160,6 +160,7 @@ def test_the_record_says_what_turned_the_velocity_where_all_references_agree(day
     assert KinematicRecord.of_notes({"instruments": record.entry()}) == record
 
 
+@thorough
 def test_a_record_from_before_says_nothing_of_it(days):
     entry = asked(*days).record.entry()
     assert (

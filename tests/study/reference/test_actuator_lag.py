@@ -43,6 +43,7 @@ def found(lags_s):
     return {type(e).__name__: e.values() for e in fit.model.lags}
 
 
+@thorough
 def test_thrusters_that_lag_alike_share_one_lag():
     lags = found(BOTH)
     assert list(lags) == ["ActuatorLag.port", "ActuatorLag.starboard"]

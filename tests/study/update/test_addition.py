@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from bench.small_boats import ship_of
+from tests.thorough import thorough
 from twin.cli import main
 from twin.physics.effects import find
 from twin.physics.model import Model
@@ -217,6 +218,7 @@ def test_a_proof_beside_an_error_in_metres_that_grows_says_what_the_proof_is_mad
     assert said.endswith(FARTHER) == (after > 21.3)
 
 
+@thorough
 def test_every_third_may_be_judged_by_the_others_and_the_history_says_so(sailed, make, kvlcc2):
     """Test: 1500 s with a compass that is off. Expected: proved on all of it, where the last third holds four
     windows of two minutes."""
