@@ -12,6 +12,7 @@ from twin.api.json_keys import KEYS
 
 pytest.importorskip("pandas")
 matplotlib = pytest.importorskip("matplotlib")
+pytestmark = thorough
 PAGE = Path(__file__).parents[2] / "docs" / "tutorials" / "notebook.py"
 RESULTS = {"before": "compare", "after": "compare", "found": "diagnose", "better": "add"}
 
@@ -26,7 +27,6 @@ def story():
     return runpy.run_path(str(PAGE)) | {"figures": len(pyplot.get_fignums())}
 
 
-@thorough
 def test_growth_is_named_and_the_error_falls_where_it_was_not_fitted(story):
     found, better = story["found"], story["better"]
     assert found.verdict == "missing" and found.effects == ["HullFouling"]
