@@ -135,6 +135,14 @@ def test_floats_arrays_and_tensors_agree_on_every_kind(kind):
     assert all(np.isfinite(float(x.grad)) for x in leaf.values() if x.grad is not None)
 
 
+def test_the_file_of_a_ship_with_actuators_says_that_the_one_propeller_and_rudder_are_not_used():
+    lines = text(to_table(ship_with(PORT))).splitlines()
+    assert [line.split()[0] for line in lines if line.endswith("; not used: each actuator has its own")] == [
+        "D_P",
+        "A_R",
+    ]
+
+
 def test_every_kind_is_written_and_read_back_the_same():
     ship = one_of_each()
     again = from_table(tomllib.loads(text(to_table(ship))))

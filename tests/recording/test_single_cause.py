@@ -86,7 +86,7 @@ MISTAKES = {
     "in m/s, read as knots": (
         lambda d: d | {"sog": d["sog"] * KNOT},
         "velocity_frame",
-        'unit = "m/s" for surge_velocity_mps',
+        'unit = "m/s" for surge_velocity_mps (speed_over_ground_mps where the map has that)',
     ),
     "east is positive to the west": (lambda d: d | {"e": -d["e"]}, "velocity_frame", "sign = -1 for east_m"),
     "in deg/s": (lambda d: d | {"rot": d["rot"] / 60}, "yaw_rate", 'unit = "deg/s" for yaw_rate_degps'),

@@ -13,7 +13,7 @@ from twin.num import as_given
 
 from . import ship_arrays, ship_pair
 from .actuators.file import tables as actuator_tables
-from .particulars import DERIVATIVES, PARTICULARS, ShipNumbers
+from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, ShipNumbers
 
 SCHEMA_VERSION = 1
 SECTIONS = ("schema_version", "name", "particulars", "derivatives", "effects", "actuators")
@@ -65,6 +65,7 @@ def text(table: Mapping[str, Any]) -> str:
     follows."""
     meaning = {"particulars": PARTICULARS, "derivatives": DERIVATIVES}
     docs = {f"{section}.{f.name}": f.metadata["doc"] for section, known in meaning.items() for f in known}
+    own = ONE_SCREW if table.get("actuators") else ()
     rest = {k: v for k, v in table.items() if k not in SECTIONS}
     lists = {
         k: v
@@ -82,7 +83,8 @@ def text(table: Mapping[str, Any]) -> str:
     for section, entries in (sections | {_key(k): v for k, v in tables.items()}).items():
         lines += ["", f"[{section}]"]
         for name, entry in entries.items():
-            words = [w for w in (docs.get(f"{section}.{name}"), in_degrees(entry)) if w]
+            idle = "not used: each actuator has its own" if name in own and section == "particulars" else ""
+            words = [w for w in (docs.get(f"{section}.{name}"), in_degrees(entry), idle) if w]
             lines.append(f"{_key(name)} = {_inline(entry)}" + (f"  # {'; '.join(words)}" if words else ""))
     lists = ({"actuators": table["actuators"]} if table.get("actuators") else {}) | lists
     for name, items in lists.items():

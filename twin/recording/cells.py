@@ -53,6 +53,7 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
         f"{name}: {key} is the same number in every row, while what it is added to is not: a dead sensor?"
         for key in _still(table, c)
     ]
+    notes += [f"{name}: {key} is empty, and so is its sum with the others" for key in _empty(table, c)]
     scale = 1.0 if c.unit in PLAIN_UNITS else factor(target(name, c), c.unit or "", where)
     values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)
     if c.deviation:
@@ -89,6 +90,14 @@ def _still(table: Table, c: Column) -> list[Key]:
     told = {key: x[np.isfinite(x)] for key in c.parts for x in (table.numbers[key],)}
     still = [key for key, x in told.items() if x.size and np.all(x == x[0])]
     return still if len(still) < len(told) else []
+
+
+def _empty(table: Table, c: Column) -> list[Key]:
+    """The columns of a sum without any number where another one has some."""
+    if c.is_text or len(c.parts) < 2:
+        return []
+    without = [key for key in c.parts if not np.isfinite(table.numbers[key]).any()]
+    return without if len(without) < len(c.parts) else []
 
 
 def sum_of(columns: list[np.ndarray], factors: tuple[float, ...]) -> np.ndarray:

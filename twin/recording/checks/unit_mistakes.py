@@ -3,6 +3,7 @@
 from twin.recording.checks.candidate_mistake import Single, Words, changes, said, scaled
 from twin.recording.checks.undo import AHEAD, FIRST, RATE, Undo, as_velocity, velocity
 from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.mapping import GROUND
 from twin.recording.units import UNITS
 
 SPEED_NAMES = {"kn": "knots"}
@@ -61,8 +62,13 @@ def of_speed(view: VoyageView) -> list[Single]:
 
 
 def speed_fix(unit: str) -> Words:
-    """The entry of the map that holds the speed: one when it comes with the course, else both."""
-    return lambda view: (
-        f'unit = "{unit}" for '
-        f"{AHEAD}{'' if view.voyage.meta.get('velocity_frame') == 'course' else ' and sway'}"
-    )
+    """The entry of the map that holds the speed, by each name that it may have there: one when it comes with
+    the course, else both."""
+
+    def fix(view: VoyageView) -> str:
+        frame = str(view.voyage.meta.get("velocity_frame"))
+        names = GROUND.get(frame, ())[: 1 if frame == "course" else 2]
+        instead = f" ({' and '.join(names)} where the map has that)" if names else ""
+        return f'unit = "{unit}" for {AHEAD}{"" if frame == "course" else " and sway"}{instead}'
+
+    return fix
