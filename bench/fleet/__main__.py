@@ -1,5 +1,5 @@
 """`python -m bench.fleet VERB`: run, table, fit, keep, add, together, partly, peer, prior, variation,
-proofs."""
+proofs, instruments."""
 
 import argparse
 import sys
@@ -10,6 +10,7 @@ from bench.fleet import (
     false_proofs,
     fleet_page,
     keep_answers,
+    kinematic_errors,
     part_of_a_voyage,
     prior_fit,
     several_voyages,
@@ -37,6 +38,7 @@ def main() -> int:
         "prior": prior_fit,
         "variation": variation_fit,
         "proofs": false_proofs,
+        "instruments": kinematic_errors,
     }
     for name, module in each.items():
         module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))

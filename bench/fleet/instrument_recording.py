@@ -36,7 +36,8 @@ def record(
     late = k.gnss_late + f.late_s
     psi, heel = at("psi", late), at("heel", late)
     ax, ay = k.arm[0] + f.antenna[0], k.arm[1] + f.antenna[1]
-    ay = ay - k.high * np.sin(heel) * (1.0 if k.has_roll else 0.0)
+    high = k.high if k.has_roll else 0.0
+    ay = ay - high * np.sin(heel)
     drifts = [
         wander(rng, 120.0, dt * every, t.size) * k.gnss_wander
         + wander(rng, 400.0, dt * every, t.size) * f.wander
@@ -48,7 +49,8 @@ def record(
     }
     slow = k.speed_late + f.late_s
     r = at("r", slow)
-    u, v = at("u", slow) - r * ay + noise(k.speed), at("v", slow) + r * ax + noise(k.speed)
+    swing = np.interp(t - slow, true["t"], np.gradient(np.sin(true["heel"]), dt))
+    u, v = at("u", slow) - r * ay + noise(k.speed), at("v", slow) + r * ax - high * swing + noise(k.speed)
     c["surge_velocity_mps"], c["sway_velocity_mps"] = step(u, 0.05), step(v, 0.05)
     seen = true["psi"]
     if f.compass_s:
@@ -102,7 +104,7 @@ def record(
         c["wave_period_peak_s"] = weather.swell_s * one
         c["wave_direction_deg"] = np.degrees(weather.swell_from + 0.15 * rng.standard_normal()) % 360 * one
     if k.has_roll:
-        c["roll_deg"] = np.degrees(at("heel", 0.0)) + noise(0.1)
+        c["roll_deg"] = -np.degrees(at("heel", 0.0)) + noise(0.1)  # heel is to port, roll to starboard
     if k.has_depth:
         c["water_depth_m"] = np.minimum(weather.depth, 15 * p.T) * (1 + noise(0.01))
     if k.has_bank:

@@ -168,8 +168,11 @@ def sail(
         )
         g = slope if old is None else tuple(1.5 * k - 0.5 * o for k, o in zip(slope, old, strict=True))
         old = slope
-        x, y = x + dt * ((u + u_c) * c - (v + v_c) * s), y + dt * ((u + u_c) * s + (v + v_c) * c)
-        psi += dt * r
+        # by the motion in the middle of the step: by that at its beginning place and heading would be late
+        ahead, aside, turn = u + 0.5 * dt * g[0], v + 0.5 * dt * g[1], r + 0.5 * dt * g[2]
+        c, s = cos(psi + 0.5 * dt * r), sin(psi + 0.5 * dt * r)
+        x, y = x + dt * (ahead * c - aside * s + c_n), y + dt * (ahead * s + aside * c + c_e)
+        psi += dt * turn
         u, v, r = u + dt * g[0], v + dt * g[1], r + dt * g[2]
         if not abs(r) < 10 or not abs(u) < 5 * p.U0:
             out[i:] = np.nan

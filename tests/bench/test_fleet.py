@@ -9,7 +9,7 @@ import pytest
 from bench.fleet import fleet_weather, hidden_causes, instrument_recording, sail, voyage_plan
 from bench.fleet.answer_score import Share, right, wrong_names
 from bench.fleet.decision_fit import healthy_limits
-from bench.fleet.fleet_legs import zigzag
+from bench.fleet.fleet_legs import RUDDER, FleetLeg, zigzag
 from bench.fleet.hull_families import FAMILIES
 from bench.fleet.plausibility import build
 
@@ -44,6 +44,40 @@ def test_a_ship_goes_as_fast_as_its_shaft_was_balanced_for(ships, family):
     ship = ships[family]
     true = sail.sail(ship, [], fleet_weather.FleetWeather(), 20 * ship.p.unit_s, 1)
     assert true["u"][-1] == pytest.approx(ship.p.U0, rel=0.1)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_place_and_heading_are_those_of_the_motion_and_no_later(ships, family):
+    """Test: a zigzag. Expected: heading and place are the integrals of rate of turn and velocity, to a hundredth of
+    the step that the ship is sailed with."""
+    ship = ships[family]
+    true = sail.sail(ship, zigzag(20), fleet_weather.FleetWeather(stream=0.5), 40 * ship.p.unit_s, 1)
+    psi, dt = np.unwrap(true["psi"]), true["t"][1]
+    way = (true["u"] + 1j * true["v"]) * np.exp(1j * psi)
+    for shown, rate in ((psi, true["r"]), (true["x"] + 1j * true["y"], way)):
+        went = np.concatenate([[0.0], np.cumsum(0.5 * dt * (rate[1:] + rate[:-1]))])
+        off = shown - shown[0] - went
+        varied, at = rate - rate.mean(), off - np.polyval(np.polyfit(true["t"], off, 1), true["t"])
+        assert abs(np.vdot(varied, at) / np.vdot(varied, varied)) < 0.01 * dt, family
+
+
+def test_a_turn_to_starboard_rolls_a_ship_to_port_and_carries_its_antenna_there(ships):
+    """Expected: roll, positive to starboard, below none; the antenna that stands high is to port of where one on
+    deck is, by its height times the sine of the roll."""
+    ship = ships["heeling"]
+    kit = replace(ship.kit, has_roll=True, gnss=0.0, gnss_wander=0.0, gnss_late=0.0, coarse=False, lost=0.0)
+    true = sail.sail(
+        ship, [FleetLeg(RUDDER, 500, np.radians(15))], fleet_weather.FleetWeather(), 30 * ship.p.unit_s, 1
+    )
+    assert true["r"][-1] > 0.0
+    places = []
+    for high in (0.0, 20.0):
+        own = replace(ship, kit=replace(kit, high=high, every_s=1.0))
+        places.append(instrument_recording.record(own, true, fleet_weather.FleetWeather(), 1)[1])
+    roll, psi = np.radians(places[0]["roll_deg"][-1]), np.radians(places[0]["heading_true_north_deg"][-1])
+    moved = [places[1][n][-1] - places[0][n][-1] for n in ("north_m", "east_m")]
+    aside = moved[1] * np.cos(psi) - moved[0] * np.sin(psi)
+    assert roll < 0.0 and aside == pytest.approx(20.0 * np.sin(roll), rel=0.2)
 
 
 @pytest.mark.parametrize("name", hidden_causes.EVERY)

@@ -124,6 +124,6 @@ def instruments(
     of_voyages(asked)
     if velocity_by:
         asked = [v.with_meta(velocity_frame=FRAMES[velocity_by]) for v in asked]
-    found = estimate(asked, float(ship.L_pp) if ship else None, quietly(progress))
+    found = estimate(asked, float(ship.L_pp) if ship else None, quietly(progress), varying=True)
     said = {"schema_version": 1, "ship": ship.name if ship else None} | as_json(found)
     return InstrumentCheck(found, ship, data=plain(said))

@@ -274,7 +274,7 @@ INSTRUMENTS = (
     JsonKey("numbers[].value", "of `unit`", "its estimate"),
     JsonKey("numbers[].lo", "of `unit`", "lower end of its 95 % interval"),
     JsonKey("numbers[].hi", "of `unit`", "upper end"),
-    JsonKey("numbers[].cramer_rao_sd", "of `unit`", "Cramer-Rao bound where the readings put it"),
+    JsonKey("numbers[].cramer_rao_sd", "of `unit`", "standard deviation behind the 95 %"),
     JsonKey("numbers[].log_bayes_factor", "natural log", "of its fault; null: not weighed"),
     JsonKey("numbers[].unseen_below", "of `unit`", "size below which it may hide; null: seen"),
     JsonKey("numbers[].known", "", "whether these voyages tell it beside all others"),

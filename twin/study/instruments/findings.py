@@ -27,9 +27,9 @@ OF_ATTITUDE = ("heading_delay", "rate_delay")  # ages of what says where the shi
 
 @dataclass(frozen=True)
 class InstrumentEstimate:
-    """One number. `sd`: the Cramer-Rao bound where the readings put it; `limit`: 95 % of what may be there
-    unseen; `known`: whether the readings say it beside all others; `unlike`: the number that it is hardest to
-    tell from."""
+    """One number. `sd`: the Cramer-Rao bound where the readings put it, with what varies from day to day
+    where `estimate` was asked for that; `limit`: 95 % of what may be there unseen; `known`: whether the
+    readings say it beside all others; `unlike`: the number that it is hardest to tell from."""
 
     unknown: InstrumentUnknown
     value: float

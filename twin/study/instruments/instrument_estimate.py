@@ -34,16 +34,19 @@ def estimate(
     progress: Progress = lambda text: None,
     clock: str | None = None,
     own: bool | None = None,
+    varying: bool = False,
 ) -> Instruments:
     """The instruments of these voyages of one ship; `length_m` of the ship, if known, scales what is believed
     of antennas and drift before any data. `clock`: the age from which others are counted, where that
     instrument was recorded and none is clearly earlier; else the earliest. `own`: whether its receiver turns
-    its velocity by an attitude of its own, if known; else what all voyages say together."""
+    its velocity by an attitude of its own, if known; else what all voyages say together. `varying`: whether
+    what sound instruments show otherwise from day to day stands beside what the readings leave open: asked of
+    voyages with no others of the same ship to compare them with."""
     readings = [_readings(v) for v in voyages]
     lengths = [length_m or r.length for r in readings]
     problems, velocity_by = _problems(readings, lengths, own, progress)
     progress("fitting all numbers at once")
-    found, prompt = _whole(problems, clock)
+    found, prompt = _whole(problems, clock, varying)
     chosen: tuple[str, ...] | None = None
     for _ in range(ROUNDS):
         book = WeighedSets(found, prompt)
@@ -53,7 +56,10 @@ def estimate(
         chosen = best.faults
         progress("fitting " + (", ".join(chosen) or "no fault"))
         found = fit(
-            problems, [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)], _start(found, best)
+            problems,
+            [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)],
+            _start(found, best),
+            varying=varying,
         )
     return said(readings, problems, found, prompt, velocity_by)
 
@@ -99,7 +105,9 @@ def _likelier_itself(r: Readings, length: float, progress: Progress) -> float:
     return told[1] - told[0]
 
 
-def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, tuple[str, ...]]:
+def _whole(
+    problems: Sequence[Problem], clock: str | None = None, varying: bool = False
+) -> tuple[KinematicFit, tuple[str, ...]]:
     """All numbers at once but for the ages that are none, and which: a clock of all instruments together
     shows nowhere; none is early, so the earliest is prompt. Where nothing ties compass and gyro to the place
     there are two such clocks: theirs, and that of place and log."""
@@ -117,7 +125,7 @@ def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[Kinem
             earliest = clock
         theta[:, [INDEX[n] for n in ages]] -= value[earliest]
         prompt.append(earliest)
-    return fit(problems, [n for n in names if n not in prompt], theta), tuple(prompt)
+    return fit(problems, [n for n in names if n not in prompt], theta, varying=varying), tuple(prompt)
 
 
 def _start(found: KinematicFit, best: Weighed) -> np.ndarray:

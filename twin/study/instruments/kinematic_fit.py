@@ -7,7 +7,7 @@ Numbers of the instruments are the ship's; the stream in the middle of a voyage 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from twin.study.instruments import arrow
 from twin.study.instruments.blocks import blocks
 from twin.study.instruments.problem import Problem
-from twin.study.instruments.unknowns import INDEX, OWN, UNKNOWNS
+from twin.study.instruments.unknowns import INDEX, OWN, UNKNOWNS, day_to_day
 
 PAIRS = ("place", "velocity", "wind")  # readings of two components
 CORRELATED = 0.1  # an autocorrelation below this is taken for chance
@@ -73,11 +73,15 @@ def opened(names: Sequence[str], voyages: int) -> np.ndarray:
 
 
 def fit(
-    problems: Sequence[Problem], names: Sequence[str], theta: np.ndarray | None = None, rounds: int = ROUNDS
+    problems: Sequence[Problem],
+    names: Sequence[str],
+    theta: np.ndarray | None = None,
+    rounds: int = ROUNDS,
+    varying: bool = False,
 ) -> KinematicFit:
     """All voyages with these numbers free and the others at nothing. `theta` (V, P): where the numbers start,
-    in their own units (None: at nothing); `rounds`: Gauss-Newton rounds at most. The problems' states and
-    scatters are left where they end."""
+    in their own units (None: at nothing); `rounds`: Gauss-Newton rounds at most. `varying`: whether A and g
+    hold what varies from day to day. The problems' states and scatters are left where they end."""
     V = len(problems)
     free = opened(names, V)
     at = np.zeros((V, P)) if theta is None else theta.copy()
@@ -96,7 +100,23 @@ def fit(
             break
     A, g, found, every = _normal(problems, at, True)
     score = _score(problems, every, found, A, width, free, _row(at))
+    if varying:
+        found = [from_day_to_day(red, p.widths) for red, p in zip(found, problems, strict=True)]
+        A, g = _together(problems, found)
     return KinematicFit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score, done)
+
+
+def from_day_to_day(red: arrow.ArrowReduced, widths: np.ndarray) -> arrow.ArrowReduced:
+    """What one voyage says of the ship's numbers theta where what it shows of them is theta + e,
+    e ~ N(0, T) with T of `day_to_day`; e integrated out, in the rows with T > 0:
+
+        A' = A - A (A + T^-1)^-1 A,   g' = g - A (A + T^-1)^-1 g
+    """
+    T = day_to_day()
+    k = np.flatnonzero(np.diag(T) > 0.0)
+    own = np.linalg.inv(T[np.ix_(k, k)] * np.outer(widths[k], widths[k]))
+    taken = red.A[:, k] @ np.linalg.solve(red.A[np.ix_(k, k)] + own, np.column_stack([red.A[k], red.g[k]]))
+    return replace(red, A=red.A - taken[:, :-1], g=red.g - taken[:, -1])
 
 
 def _widths(problems: Sequence[Problem]) -> np.ndarray:
@@ -113,17 +133,24 @@ def _normal(
 ) -> tuple[np.ndarray, np.ndarray, list[arrow.ArrowReduced], list[list[arrow.Block]]]:
     """The normal equations of all voyages; `sober`: with readings that err together told for what they are
     worth (the paths are fitted without: a bad fit errs together too, and would be believed)."""
+    every = [blocks(p, at) for p, at in zip(problems, theta, strict=True)]
+    found = [
+        arrow.reduce(bs, p.worth() if sober else p.sd, p.fast) for bs, p in zip(every, problems, strict=True)
+    ]
+    return *_together(problems, found), found, every
+
+
+def _together(
+    problems: Sequence[Problem], found: Sequence[arrow.ArrowReduced]
+) -> tuple[np.ndarray, np.ndarray]:
+    """A and g over the numbers of all voyages."""
     Q = len(SHARED) + len(MINE) * len(problems)
-    A, g, found, every = np.zeros((Q, Q)), np.zeros(Q), [], []
-    for v, p in enumerate(problems):
-        bs = blocks(p, theta[v])
-        red = arrow.reduce(bs, p.worth() if sober else p.sd, p.fast)
+    A, g = np.zeros((Q, Q)), np.zeros(Q)
+    for v, red in enumerate(found):
         at = columns(v)
         A[np.ix_(at, at)] += red.A
         g[at] += red.g
-        found.append(red)
-        every.append(bs)
-    return _positive(A, _widths(problems)), g, found, every
+    return _positive(A, _widths(problems)), g
 
 
 def _positive(A: np.ndarray, width: np.ndarray) -> np.ndarray:

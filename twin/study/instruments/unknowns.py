@@ -12,7 +12,8 @@ from twin.physics.effects import catalogue
 @dataclass(frozen=True)
 class InstrumentUnknown:
     """One number. `sd`: prior width about none, in units of a scale of the voyage (`of`); `late`: it cannot
-    be below zero."""
+    be below zero; `varies`: the share of `sd` by which what one voyage says of it is off beside what its
+    readings leave open, as on random ships: streams turn, a wind carries aside, a sea rolls."""
 
     name: str
     fault: str  # the group that is named together
@@ -21,6 +22,7 @@ class InstrumentUnknown:
     of: str  # "one", "speed" [m/s], "length" [m] or "time" [s] of this voyage
     meaning: str
     late: bool = False
+    varies: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,9 @@ FAULTS: Mapping[str, InstrumentFault] = {
 ALWAYS = ("current", "drift")  # never left out: every voyage has a stream, and every ship drifts in a turn
 
 UNKNOWNS: tuple[InstrumentUnknown, ...] = (
-    InstrumentUnknown("gnss_delay", "gnss_delay", "s", 1.0, "one", "age of position and velocity", late=True),
+    InstrumentUnknown(
+        "gnss_delay", "gnss_delay", "s", 1.0, "one", "age of position and velocity", late=True, varies=0.25
+    ),
     InstrumentUnknown(
         "smoothing",
         "smoothing",
@@ -71,31 +75,70 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         "one",
         "time constant of the smoothing of course and speed over ground",
         late=True,
+        varies=0.115,
     ),
-    InstrumentUnknown("heading_delay", "heading_delay", "s", 1.0, "one", "age of the heading", late=True),
-    InstrumentUnknown("rate_delay", "rate_delay", "s", 1.0, "one", "age of the rate of turn", late=True),
-    InstrumentUnknown("log_delay", "log_delay", "s", 1.0, "one", "age of the speed through water", late=True),
     InstrumentUnknown(
-        "A", "heading_bias", "rad", 0.2, "one", "shown heading less the true one, on all headings"
+        "heading_delay", "heading_delay", "s", 1.0, "one", "age of the heading", late=True, varies=0.45
     ),
-    InstrumentUnknown("B", "deviation", "rad", 0.05, "one", "deviation with the sine of the heading"),
-    InstrumentUnknown("C", "deviation", "rad", 0.05, "one", "deviation with the cosine of the heading"),
-    InstrumentUnknown("D", "deviation", "rad", 0.03, "one", "deviation with the sine of twice the heading"),
-    InstrumentUnknown("E", "deviation", "rad", 0.03, "one", "deviation with the cosine of twice the heading"),
+    InstrumentUnknown(
+        "rate_delay", "rate_delay", "s", 1.0, "one", "age of the rate of turn", late=True, varies=0.23
+    ),
+    InstrumentUnknown(
+        "log_delay", "log_delay", "s", 1.0, "one", "age of the speed through water", late=True, varies=0.48
+    ),
+    InstrumentUnknown(
+        "A",
+        "heading_bias",
+        "rad",
+        0.2,
+        "one",
+        "shown heading less the true one, on all headings",
+        varies=0.005,
+    ),
+    InstrumentUnknown(
+        "B", "deviation", "rad", 0.05, "one", "deviation with the sine of the heading", varies=0.055
+    ),
+    InstrumentUnknown(
+        "C", "deviation", "rad", 0.05, "one", "deviation with the cosine of the heading", varies=0.058
+    ),
+    InstrumentUnknown(
+        "D", "deviation", "rad", 0.03, "one", "deviation with the sine of twice the heading", varies=0.06
+    ),
+    InstrumentUnknown(
+        "E", "deviation", "rad", 0.03, "one", "deviation with the cosine of twice the heading", varies=0.065
+    ),
     InstrumentUnknown(
         "gyro_bias", "gyro_bias", "rad/s", 0.002, "one", "shown rate of turn less the true one"
     ),
     InstrumentUnknown(
-        "gyro_scale", "gyro_scale", "-", 0.1, "one", "shown rate of turn over the true one, less 1"
+        "gyro_scale",
+        "gyro_scale",
+        "-",
+        0.1,
+        "one",
+        "shown rate of turn over the true one, less 1",
+        varies=0.055,
     ),
     InstrumentUnknown(
-        "log_scale", "log_scale", "-", 0.2, "one", "shown speed through water over the true one, less 1"
+        "log_scale",
+        "log_scale",
+        "-",
+        0.2,
+        "one",
+        "shown speed through water over the true one, less 1",
+        varies=0.27,
     ),
     InstrumentUnknown(
-        "log_bias", "log_bias", "m/s", 0.1, "speed", "shown speed through water less the true one"
+        "log_bias", "log_bias", "m/s", 0.1, "speed", "shown speed through water less the true one", varies=0.5
     ),
     InstrumentUnknown(
-        "log_angle", "log_angle", "rad", 0.1, "one", "how far the log's axis points to starboard"
+        "log_angle",
+        "log_angle",
+        "rad",
+        0.1,
+        "one",
+        "how far the log's axis points to starboard",
+        varies=0.025,
     ),
     InstrumentUnknown(
         "antenna_ahead",
@@ -104,6 +147,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.3,
         "length",
         "antenna ahead of the log, or of where the settings have it",
+        varies=0.115,
     ),
     InstrumentUnknown(
         "antenna_starboard",
@@ -112,11 +156,14 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.1,
         "length",
         "antenna to starboard of where the settings have it",
+        varies=0.037,
     ),
-    InstrumentUnknown("antenna_above", "mast", "m", 0.2, "length", "antenna above the axis of roll"),
-    InstrumentUnknown("vane", "vane", "rad", 0.1, "one", "shown wind angle less the true one"),
     InstrumentUnknown(
-        "wind_scale", "anemometer", "-", 0.2, "one", "shown wind speed over the true one, less 1"
+        "antenna_above", "mast", "m", 0.2, "length", "antenna above the axis of roll", varies=0.37
+    ),
+    InstrumentUnknown("vane", "vane", "rad", 0.1, "one", "shown wind angle less the true one", varies=0.3),
+    InstrumentUnknown(
+        "wind_scale", "anemometer", "-", 0.2, "one", "shown wind speed over the true one, less 1", varies=0.2
     ),
     InstrumentUnknown(
         "leeway",
@@ -137,6 +184,8 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
     InstrumentUnknown("drift_r_r", "drift", "m", 0.3, "length", "the same, more of it in a hard turn"),
     InstrumentUnknown("drift_ur", "drift", "s", 3.0, "one", "the same, more of it at speed"),
 )
+# correlation of what varies: how much a log shows is well known, and which of the two it is is not
+TOGETHER: Mapping[tuple[str, str], float] = {("log_scale", "log_bias"): -0.985}
 INDEX: Mapping[str, int] = {u.name: i for i, u in enumerate(UNKNOWNS)}
 OWN = ("current_north", "current_east")  # of each voyage; the rest is the ship's
 
@@ -150,6 +199,16 @@ def effect_of(fault: str) -> str | None:
     """The effect of the catalogue that holds numbers of this fault (`by_readings`); None: none does."""
     own = {UNKNOWNS[i].name for i in members(fault)}
     return next((name for name, e in catalogue().items() if own & set(e.by_readings)), None)
+
+
+def day_to_day() -> np.ndarray:
+    """(P, P) covariance of what varies, in prior widths."""
+    sd = np.array([u.varies for u in UNKNOWNS])
+    out = np.diag(sd**2)
+    for (a, b), share in TOGETHER.items():
+        i, j = INDEX[a], INDEX[b]
+        out[i, j] = out[j, i] = share * sd[i] * sd[j]
+    return out
 
 
 def widths(speed: float, length: float, time: float) -> np.ndarray:
