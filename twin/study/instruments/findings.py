@@ -129,7 +129,8 @@ def _one(
         return None
     about = best if i in best.at else book.weigh([*best.faults, fault])
     k = int(np.flatnonzero(about.at == i)[0])
-    sd, value = float(np.sqrt(about.covariance[k, k])), float(about.mean[k])
+    known = book.fit.width[i] ** -2.0 if fault not in ALWAYS else 0.0
+    sd, value = _as_read(float(about.mean[k]), float(about.covariance[k, k]), known)
     at = int(np.flatnonzero(everything.at == i)[0])
     wide = np.sqrt(np.diag(everything.covariance))
     alike = np.abs(everything.covariance[at]) / (wide[at] * wide)
@@ -148,6 +149,15 @@ def _one(
         book.names[everything.at[j]] if alike[j] > ALIKE else None,
         None if own is None else readings[own].name,
     )
+
+
+def _as_read(mean: float, variance: float, known: float) -> tuple[float, float]:
+    """(sd, value) of a number as the readings alone have it, without what was believed before, N(0, 1/known);
+    with it where that tells more than they do."""
+    read = 1.0 / variance - known
+    if read < known:
+        return float(np.sqrt(variance)), mean
+    return float(read**-0.5), mean / variance / read
 
 
 def _falls(

@@ -78,10 +78,10 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         varies=0.115,
     ),
     InstrumentUnknown(
-        "heading_delay", "heading_delay", "s", 1.0, "one", "age of the heading", late=True, varies=0.45
+        "heading_delay", "heading_delay", "s", 1.0, "one", "age of the heading", late=True, varies=0.25
     ),
     InstrumentUnknown(
-        "rate_delay", "rate_delay", "s", 1.0, "one", "age of the rate of turn", late=True, varies=0.23
+        "rate_delay", "rate_delay", "s", 1.0, "one", "age of the rate of turn", late=True, varies=0.25
     ),
     InstrumentUnknown(
         "log_delay", "log_delay", "s", 1.0, "one", "age of the speed through water", late=True, varies=0.48
@@ -93,7 +93,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.2,
         "one",
         "shown heading less the true one, on all headings",
-        varies=0.005,
+        varies=0.004,
     ),
     InstrumentUnknown(
         "B", "deviation", "rad", 0.05, "one", "deviation with the sine of the heading", varies=0.055
@@ -117,7 +117,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.1,
         "one",
         "shown rate of turn over the true one, less 1",
-        varies=0.055,
+        varies=0.065,
     ),
     InstrumentUnknown(
         "log_scale",
@@ -126,7 +126,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.2,
         "one",
         "shown speed through water over the true one, less 1",
-        varies=0.27,
+        varies=0.2,
     ),
     InstrumentUnknown(
         "log_bias", "log_bias", "m/s", 0.1, "speed", "shown speed through water less the true one", varies=0.5
@@ -147,7 +147,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.3,
         "length",
         "antenna ahead of the log, or of where the settings have it",
-        varies=0.115,
+        varies=0.125,
     ),
     InstrumentUnknown(
         "antenna_starboard",
@@ -156,14 +156,14 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.1,
         "length",
         "antenna to starboard of where the settings have it",
-        varies=0.037,
+        varies=0.045,
     ),
     InstrumentUnknown(
-        "antenna_above", "mast", "m", 0.2, "length", "antenna above the axis of roll", varies=0.37
+        "antenna_above", "mast", "m", 0.2, "length", "antenna above the axis of roll", varies=0.45
     ),
-    InstrumentUnknown("vane", "vane", "rad", 0.1, "one", "shown wind angle less the true one", varies=0.3),
+    InstrumentUnknown("vane", "vane", "rad", 0.1, "one", "shown wind angle less the true one", varies=0.22),
     InstrumentUnknown(
-        "wind_scale", "anemometer", "-", 0.2, "one", "shown wind speed over the true one, less 1", varies=0.2
+        "wind_scale", "anemometer", "-", 0.2, "one", "shown wind speed over the true one, less 1", varies=0.1
     ),
     InstrumentUnknown(
         "leeway",
