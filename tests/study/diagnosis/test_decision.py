@@ -11,7 +11,7 @@ from twin.study.diagnosis.criteria import SURE
 from twin.study.diagnosis.decision import RULES, decide
 from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.naming import CAUSE_RULES, SECOND_NOT_SURE, why_not
-from twin.study.diagnosis.sentences import why_not as words
+from twin.study.diagnosis.reasons import why_not as words
 
 RECORDED = json.loads(Path(__file__).with_name("recorded_facts.json").read_text())
 LEFT = Left(error=0.9, share=0.4, restless=0.0)

@@ -5,12 +5,14 @@ from typing import Any
 
 from twin.num import clock, num, percent
 from twin.study.diagnosis.acting import acting
-from twin.study.diagnosis.criteria import CERTAIN, NAMED, POWER, SIGNIFICANT
+from twin.study.diagnosis.criteria import POWER
 from twin.study.diagnosis.force_in_words import force
+from twin.study.diagnosis.reasons import ROUGHLY, nearer, why_not
 
 Result = dict[str, Any]
 SMALL = "The open-loop error of these voyages does not fall with it: `twin add` may ask for more voyages."
-ROUGHLY = "in weather like this, whose force is known only roughly, that may be the weather's effect"
+ANY_NEARER = 0.9  # share of an open-loop error above which it is said to have hardly fallen
+PROBABLY = 0.75  # probability below which a cause is said to be missing probably
 
 
 def named(result: Result) -> str:
@@ -25,9 +27,15 @@ def named(result: Result) -> str:
         for c in result["resembles"]
     )
     return (
-        f"Missing: {' and '.join(likely(result, n) for n in names)}. "
+        f"{_how_likely(result, names)}: {' and '.join(likely(result, n) for n in names)}. "
         f"{what}{small}{further_in_words(result, names)}{more}{_more(result)}"
     )
+
+
+def _how_likely(result: Result, names: list[str]) -> str:
+    """How such an answer is begun, by the least likely of the names."""
+    least = min(by_name(result)[n]["probability"] for n in names)
+    return "Missing" if least >= PROBABLY else "Probably missing" if least >= 0.5 else "Perhaps missing"
 
 
 def _said(result: Result, name: str) -> str:
@@ -71,9 +79,23 @@ def nothing(result: Result) -> str:
 def resembles(result: Result) -> str:
     """Something is missing that resembles an effect."""
     near = _near(result)
-    resembling = [f" It resembles {like['effect']}: {like['says']}" for like in result["resembles"][:1]]
+    resembling = [
+        f" It resembles {like['effect']}: {like['says']}{_no_nearer(like)}"
+        for like in result["resembles"][:1]
+    ]
     beside = [f" Beside it: {' with '.join(near)}."] if near else []
     return "".join(["Something is missing that is not in the catalogue of effects.", *resembling, *beside])
+
+
+def _no_nearer(c: Result) -> str:
+    """Where an effect brings the model hardly nearer to where the ship went, and not near enough: that."""
+    without, with_it, usual = c["error_without"], c["error_with"], c["error_floor"]
+    if None in (without, with_it, usual) or with_it <= usual or with_it < ANY_NEARER * without:
+        return ""
+    return (
+        f" But with it the model comes hardly nearer to where the ship went ({num(with_it, 3)} m, "
+        f"{num(without, 3)} m without; {num(usual, 3)} m are expected): something else acts, too, or instead."
+    )
 
 
 def pushed(result: Result) -> str:
@@ -105,9 +127,10 @@ def unexplained(result: Result) -> str:
 
 def one_of(result: Result) -> str:
     """One of several effects, which nobody can tell apart."""
-    known_by_form = {c["effect"] for c in result["resembles"]}
+    known_by_form = {c["effect"]: percent(c["probability"]) for c in result["resembles"]}
     *others, last = [
-        f"something like {n}" if n in known_by_form else likely(result, n) for n in result["one_of"]
+        f"something like {n} ({known_by_form[n]})" if n in known_by_form else likely(result, n)
+        for n in result["one_of"]
     ]
     return (
         f"Undecided: probably {', '.join(others)} or {last} is missing; these voyages cannot tell them apart."
@@ -186,47 +209,6 @@ def cannot_tell(result: Result) -> str:
     return "Undecided: these voyages cannot tell what, if anything, is missing."
 
 
-def why_not(c: Result, reason: str) -> str:
-    """Why what is likely is not named: the words of each reason of the decision."""
-    none = "what the ship file has" if any("in_ship_file" in p for p in c["parameters"]) else "none"
-    with_it = (
-        f"{num(c['error_with'], 3)} m with it, {num(c['error_without'], 3)} m without"
-        if c["error_with"] is not None
-        else "not computed"
-    )
-    return {
-        "not_in_explanation": "the explanation that leaves least does without it",
-        "as_on_references": "single causes explained as much of healthy reference voyages of this ship"
-        if c.get("on_references") is None
-        else "the instruments, held against each other without the ship, show no more of it than on the "
-        "reference voyages (twin instruments tells what they show)",
-        "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
-        f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
-        "true)",
-        "not_significant": f"all its numbers together are less than {num(SIGNIFICANT, 1)} standard "
-        f"deviations from {none}, and an instrument is named from there on",
-        "change_within_form": "what changed is no clear gain by itself, or no more than the form that the "
-        "ship file has of it may be wrong by",
-        "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
-        f"({num(c['error_with'], 3)} m with it)"
-        if nearer(c)
-        else f"adding it does not reduce the open-loop error ({with_it})",
-        "weather_may_mislead": ROUGHLY,
-        "comes_and_goes": "what acts like it comes and goes, and it would act all the time",
-        "second_not_sure": f"a second cause needs {100.0 * CERTAIN:.0f} %: it may only be correcting an "
-        "error in the form of the first",
-    }[reason]
-
-
-def only_together(c: Result) -> str:
-    """Why a cause is named although none of its numbers is sure by itself."""
-    same = "what the ship file has" if any("in_ship_file" in p for p in c["parameters"]) else "none"
-    return (
-        f"each of its numbers alone may be {same}, for its 95 % interval holds that; all together are "
-        f"{num(c['together_sd'])} standard deviations from it, so that it is named"
-    )
-
-
 def by_name(result: Result) -> Result:
     """The candidates by their effect."""
     return {c["effect"]: c for c in result["candidates"]}
@@ -239,11 +221,6 @@ def likely(result: Result, name: str) -> str:
         return name
     changed = any("in_ship_file" in p for p in c["parameters"])
     return f"{'a change of ' * changed}{name} ({percent(c['probability'])})"
-
-
-def nearer(candidate: Result) -> bool:
-    """Whether the open-loop error is smaller with this effect than without any."""
-    return candidate["error_with"] is not None and bool(candidate["error_with"] < candidate["error_without"])
 
 
 def when(m: Result) -> str:

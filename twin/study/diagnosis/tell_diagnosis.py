@@ -4,6 +4,7 @@ from typing import Any
 
 from twin.num import as_given, clock, num, percent, readable
 from twin.recording.checks import whose
+from twin.study.diagnosis import reasons
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.force_in_words import force as in_words
@@ -121,7 +122,7 @@ def candidate_lines(c: dict[str, Any]) -> list[str]:
         lines.append("          its size changes with time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
     if c.get("together_sd"):
-        lines.append(f"          {say.only_together(c)}")
+        lines.append(f"          {reasons.only_together(c)}")
     if c["cannot_be_told_from"]:
         lines.append(f"          cannot be told apart from {', '.join(c['cannot_be_told_from'])}")
     return lines
@@ -150,7 +151,7 @@ def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
     """Why what is likely is not named beside what is."""
     reason = result["answer"]["not_named"].get(c["effect"])
     return (
-        [f"          not named: {say.why_not(c, reason)}"]
+        [f"          not named: {reasons.why_not(c, reason)}"]
         if reason and result["verdict"] == "missing"
         else []
     )

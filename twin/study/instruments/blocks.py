@@ -1,6 +1,7 @@
 """The rows that are solved: every reading and every prior about the states as they are, with their slopes."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.sparse import diags_array
@@ -29,7 +30,7 @@ AFFECT = {
     "log": ("log_delay", "log_scale", "log_bias", "log_angle", "current_north", "current_east"),
     "log aside": ("log_delay", "log_scale", "log_angle", "current_north", "current_east"),
     "wind": ("vane", "wind_scale"),
-    "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "drift_ur", "leeway"),
+    "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "drift_late", "leeway"),
 }
 # without one of which (or a log of two axes) only how the ship drifts in a turn would tell it (the gyro's
 # scale: from a deviation), and that is no instrument's business
@@ -63,13 +64,30 @@ def blocks(p: Problem, theta: Theta) -> list[Block]:
     return out + _priors(p)
 
 
-def _whitened(p: Problem, b: Block, ahead: np.ndarray) -> Block:
-    """What drift does beside its formula lasts: each row less `memory` times the one before it, at the same
-    scatter. Only where the ship has way `ahead` (n,) does its formula hold; behind a gap it begins anew."""
-    p.beside = np.where(ahead, b.r, 0.0)
+def misfit(p: Problem, theta: Theta) -> float:
+    """Sum of squares of all readings and priors about the states as they are, each in its own scatter; a
+    reading beyond OUTLIER of them counts as one that is so far off."""
+    with remembering(p):
+        left = {n: p.by[n].y.T.ravel() - sense(p, theta, None) for n, sense in SENSES.items() if n in p.by}
+        ahead = has_way_ahead(p, theta)
+        left["drift"] = np.where(ahead, _lasting_rest(p, ahead) @ drift(p, theta, None), 0.0)
+    read = sum(float(np.minimum((r / p.sd[name]) ** 2, OUTLIER**2).sum()) for name, r in left.items())
+    return read + sum(float(((J @ p.x) ** 2).sum()) / p.sd[name] ** 2 for name, J in p.priors.items())
+
+
+def _lasting_rest(p: Problem, ahead: np.ndarray) -> Any:
+    """What drift does beside its formula lasts: what takes of each row `memory` times the one before it, at
+    the same scatter; behind a gap in `ahead` (n,) it begins anew."""
     goes_on, k = ahead[1:] & ahead[:-1], 1.0 / np.sqrt(1.0 - p.memory**2)
     main, before = np.r_[1.0, np.where(goes_on, k, 1.0)], np.where(goes_on, -k * p.memory, 0.0)
-    L = diags_array([main, before], offsets=[0, -1]).tocsr()
+    return diags_array([main, before], offsets=[0, -1]).tocsr()
+
+
+def _whitened(p: Problem, b: Block, ahead: np.ndarray) -> Block:
+    """The drift's rows, each less what lasts of the one before it. Only where the ship has way `ahead` (n,)
+    does its formula hold."""
+    p.beside = np.where(ahead, b.r, 0.0)
+    L = _lasting_rest(p, ahead)
     return Block(b.name, L @ b.r, (L @ b.J).tocsr(), L @ b.G, ahead.astype(float))
 
 
@@ -86,8 +104,6 @@ def _block(
     G = np.zeros((y.size, len(UNKNOWNS)))
     for unknown in AFFECT[name]:
         wanted = set(WANTS.get(unknown, ()))
-        if unknown == "drift_ur" and p.tied:  # to the ship's drift alone a late position is this
-            continue
         if wanted and "log aside" not in p.by and not wanted & {*p.by, *(["own"] if p.own else [])}:
             continue
         step = DIFFERENCE_WIDTHS * float(p.widths[INDEX[unknown]])

@@ -13,13 +13,14 @@ from functools import cached_property
 import numpy as np
 
 from twin.study.instruments import arrow
-from twin.study.instruments.blocks import blocks
+from twin.study.instruments.blocks import blocks, misfit
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.unknowns import INDEX, OWN, UNKNOWNS, day_to_day
 
 PAIRS = ("place", "velocity", "wind")  # readings of two components
 CORRELATED = 0.1  # an autocorrelation below this is taken for chance
-ROUNDS, CLOSE = 9, 0.03  # Gauss-Newton rounds at most; steps in scatters of the numbers at which it is done
+ROUNDS, CLOSE = 12, 0.03  # Gauss-Newton rounds at most; steps in scatters of the numbers at which it is done
+HALVINGS = 4  # of a step that fits worse
 # readings that the usual size of a stream's changes, and of what drift does beside its formula, is worth
 BELIEVED = 20.0
 P = len(UNKNOWNS)
@@ -92,10 +93,10 @@ def fit(
     for done in range(1, rounds + 1):
         A, g, found, every = _normal(problems, at)
         covariance, step = _step(A, g, width, free, _row(at))
-        _move(problems, found, at, step)
-        _scatters(problems, every, found, covariance, rng)
-        for p in problems:
-            p.remember()
+        if _stepped(problems, found, at, step, width):
+            _scatters(problems, every, found, covariance, rng)
+            for p in problems:
+                p.remember()
         if done > 3 and np.all(np.abs(step[free]) < CLOSE * np.sqrt(np.diag(covariance)[free])):
             break
     A, g, found, every = _normal(problems, at, True)
@@ -168,13 +169,43 @@ def _step(
     return covariance, covariance @ (g - at / width**2)
 
 
+def _stepped(
+    problems: Sequence[Problem],
+    found: Sequence[arrow.ArrowReduced],
+    theta: np.ndarray,
+    step: np.ndarray,
+    width: np.ndarray,
+) -> bool:
+    """A step of numbers and paths, halved while it would fit worse, HALVINGS times at most; whether it was a
+    whole one, after which scatters may be judged."""
+    before, x, at = _misfit(problems, theta, width), [p.x for p in problems], theta.copy()
+    for halving in range(HALVINGS + 1):
+        for p, was in zip(problems, x, strict=True):
+            p.x = was
+        theta[:] = at
+        _move(problems, found, theta, step, 0.5**halving)
+        if _misfit(problems, theta, width) <= before:
+            break
+    return halving == 0
+
+
+def _misfit(problems: Sequence[Problem], theta: np.ndarray, width: np.ndarray) -> float:
+    """What the numbers and paths as they are leave over, in scatters, squared."""
+    left = sum(misfit(p, t) for p, t in zip(problems, theta, strict=True))
+    return left + float(((_row(theta) / width) ** 2).sum())
+
+
 def _move(
-    problems: Sequence[Problem], found: Sequence[arrow.ArrowReduced], theta: np.ndarray, step: np.ndarray
+    problems: Sequence[Problem],
+    found: Sequence[arrow.ArrowReduced],
+    theta: np.ndarray,
+    step: np.ndarray,
+    share: float,
 ) -> None:
     for v, (p, red) in enumerate(zip(problems, found, strict=True)):
         mine = step[columns(v)]
-        p.x += red.states(mine)
-        theta[v] += mine
+        p.x = p.x + share * red.states(mine)
+        theta[v] += share * mine
 
 
 def _scatters(

@@ -190,8 +190,9 @@ class Problem:
         self.sd = {k: v for k, v in first.items() if k in self.by}
         self.sd |= {
             "drift": 0.05 * U,
-            "jerk": U / T**2,
-            "twist": 0.3 / T**3,
+            # far above what a path has: from there they come down in a few rounds, from below in a hundred
+            "jerk": 3.0 * U / T**2,
+            "twist": 10.0 / T**3,
             "stream": 0.003 * U,
             "tie": 1e-4 * U,
         }

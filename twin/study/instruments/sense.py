@@ -14,7 +14,8 @@ Frames: north-east; the ship's axes ahead and to starboard. s = t - latency; R t
     wind      turned by the vane: R^T ((1 + k_w) V - W), W = (1 + k_w) air, the wind as this anemometer would
               show it at rest. W is the state: were it the air, a larger k_w would make its steps smaller and
               be preferred for that alone
-    drift     0 = v_r - d_1 r - d_2 dr/dt - d_3 r |r| / r_0 - d_4 u_r r - leeway V_a v_a / U
+    drift     0 = v_r(t + l) - d_1 r - d_2 dr/dt - d_3 r |r| / r_0 - leeway V_a v_a / U, the ship's sway l
+              later than its turn: so a late position looks to it, too, and only other instruments tell that
 """
 
 import numpy as np
@@ -141,22 +142,21 @@ def log_aside(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 def drift(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     """(N,) speed to starboard through the water [m/s] beyond what turning and wind make of it, at the times
     of the grid: nothing is expected. `rows` gets no slopes of the leeway."""
-    here = at(p, p.grid)
-    u, v = _through_water(here, theta)
+    here, later = at(p, p.grid), at(p, p.grid, -get(theta, "drift_late"))
+    north, east = stream_at(here, theta)
+    u, v = here.body(later.v[:, 0] - north, later.v[:, 1] - east)
     r, r_dot = here.v[:, 2], here.a[:, 2]
-    d1, d2, d3, d4 = (get(theta, k) for k in ("drift_r", "drift_rr", "drift_r_r", "drift_ur"))
+    d1, d2, d3 = (get(theta, k) for k in ("drift_r", "drift_rr", "drift_r_r"))
     usual = 0.1 * p.readings.speed / p.length
     if rows:
-        _turned(p, rows, here, u, v, -d4 * r, 1.0)
-        rows.add(0, p.at[0][:, 2], here.weights(1), -d1 - 2.0 * d3 * np.abs(r) / usual - d4 * u)
+        for j, d in enumerate((-here.s, here.c)):
+            rows.add(0, p.at[0][:, j], later.weights(1), d)
+            rows.add(0, p.at[1][:, j], here.slow, -d)
+        rows.add(0, p.at[0][:, 2], here.weights(0), -u)
+        rows.add(0, p.at[0][:, 2], here.weights(1), -d1 - 2.0 * d3 * np.abs(r) / usual)
         rows.add(0, p.at[0][:, 2], here.weights(2), -d2)
     return np.asarray(
-        v
-        - d1 * r
-        - d2 * r_dot
-        - d3 * r * np.abs(r) / usual
-        - d4 * u * r
-        - get(theta, "leeway") * blown(p, here)
+        v - d1 * r - d2 * r_dot - d3 * r * np.abs(r) / usual - get(theta, "leeway") * blown(p, here)
     )
 
 

@@ -182,7 +182,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
     InstrumentUnknown("drift_r", "drift", "m", 0.5, "length", "speed aside for a rate of turn"),
     InstrumentUnknown("drift_rr", "drift", "m s", 0.2, "length time", "the same, for one that grows"),
     InstrumentUnknown("drift_r_r", "drift", "m", 0.3, "length", "the same, more of it in a hard turn"),
-    InstrumentUnknown("drift_ur", "drift", "s", 3.0, "one", "the same, more of it at speed"),
+    InstrumentUnknown("drift_late", "drift", "s", 0.5, "time", "the same, later than the turn"),
 )
 # correlation of what varies: how much a log shows is well known, and which of the two it is is not
 TOGETHER: Mapping[tuple[str, str], float] = {("log_scale", "log_bias"): -0.985}
@@ -214,5 +214,5 @@ def day_to_day() -> np.ndarray:
 def widths(speed: float, length: float, time: float) -> np.ndarray:
     """(P,) prior widths in the numbers' own units on a voyage of this speed [m/s], length [m] and time of
     motion [s]."""
-    scale = {"one": 1.0, "speed": speed, "length": length, "length time": length * time}
+    scale = {"one": 1.0, "speed": speed, "length": length, "time": time, "length time": length * time}
     return np.array([u.sd * scale[u.of] for u in UNKNOWNS])
