@@ -10,8 +10,9 @@ from tests import command_lines
 from twin.cli import main
 from twin.commands import import_ as verb
 from twin.errors import DataError, SettingsError
-from twin.recording.import_voyage import import_voyage
+from twin.recording.import_voyage import how_often, import_voyage
 from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
 
 
 def run(*words):
@@ -125,3 +126,12 @@ def test_the_example_map_of_the_page_reads_its_example_file(tmp_path):
     found = import_voyage(tmp_path / "bridge.csv", tmp_path / "bridge.toml")
     assert len(found.voyage) == 40 and found.voyage.step_s == pytest.approx(0.5)
     assert found.voyage["surge_velocity_mps"][0] == pytest.approx(6.2, abs=0.2)
+
+
+def test_of_a_log_with_a_row_for_each_sentence_it_is_said_how_often_a_heading_came():
+    """Test: five sentences a second, a heading in one of them; and a table. Expected: every second; every 0.5 s."""
+    t = np.arange(0.0, 60.0, 0.2)
+    heading = np.where(np.arange(t.size) % 5 == 0, 90.0, np.nan)
+    assert how_often(Voyage("log", t, {"heading_true_north_deg": heading}, {})) == "a heading every 1 s"
+    table = Voyage("table", t * 2.5, {"heading_true_north_deg": np.full(t.size, 90.0)}, {})
+    assert how_often(table) == "a sample every 0.5 s"

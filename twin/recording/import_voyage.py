@@ -4,6 +4,8 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from twin.errors import SettingsError, did_you_mean
 from twin.num import as_given
 from twin.physics.ship import Ship, load
@@ -91,10 +93,7 @@ def summary(found: Imported, every: bool = False) -> list[str]:
     """What is wrong first, then what asks for a look; what is quiet is one line, unless every check is asked
     for."""
     v = found.voyage
-    lines = [
-        f"{v.name}: {len(v)} rows, {as_given(v.duration_s, 6)} s, a sample every {as_given(v.step_s, 6)} "
-        f"s{read_as(v)}"
-    ]
+    lines = [f"{v.name}: {len(v)} rows, {as_given(v.duration_s, 6)} s, {how_often(v)}{read_as(v)}"]
     wrong = [c for c in found.checks if c.unusable]
     looks = [c for c in found.checks if not c.ok and not c.unusable]
     quiet = [c for c in found.checks if c.ok]
@@ -103,6 +102,15 @@ def summary(found: Imported, every: bool = False) -> list[str]:
         lines.append(f"  {quietly(quiet)}")
     lines += [f"  derived  {name}: {how}" for name, how in v.meta.get("derived", {}).items()]
     return lines + [f"  note     {note}" for note in v.meta.get("notes", ())]
+
+
+def how_often(v: Voyage) -> str:
+    """How often it was sampled; of a log with a row for each sentence of each instrument, how often a heading
+    was."""
+    headed = np.diff(v.time_s[np.isfinite(v.columns["heading_true_north_deg"])])
+    usual = float(np.median(headed)) if headed.size else v.step_s
+    what = "a heading" if usual > 1.5 * v.step_s else "a sample"
+    return f"{what} every {as_given(usual, 6)} s"
 
 
 def read_as(v: Voyage) -> str:

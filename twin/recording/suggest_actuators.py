@@ -1,7 +1,7 @@
 """The entries of a proposed map for vessels with several actuators, where names say whose a column is."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -87,3 +87,17 @@ def shared_rudder(columns: dict[str, Any], rudder: Any) -> dict[str, Any]:
     """One rudder angle behind several shafts: it is each one's."""
     owners = dict.fromkeys(c.partition(".")[0] for c in columns if c.endswith(".rate_rpm"))
     return {f"{o}.angle_deg": rudder for o in owners if f"{o}.angle_deg" not in columns}
+
+
+def means_of_two(columns: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Of two rudders behind two shafts, read alike, the entries of their means, as a ship file with one
+    rudder and one propeller has them; none where there are other actuators. `columns`: channel -> keys."""
+    owners = list(dict.fromkeys(c.partition(".")[0] for c in columns if "." in c))
+    out = {}
+    for channel, last in zip(CONTROLS, ("angle_deg", "rate_rpm"), strict=False):
+        both = [columns.get(f"{owner}.{last}", {}) for owner in owners]
+        how = [{k: v for k, v in keys.items() if k != "column"} for keys in both]
+        if len(both) != 2 or not all(both) or how[0] != how[1]:
+            return {}
+        out[channel] = {"column": [keys["column"] for keys in both], "factors": [0.5, 0.5], **how[0]}
+    return out

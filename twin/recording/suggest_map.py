@@ -17,13 +17,17 @@ from twin.recording.map_file import parse_map
 from twin.recording.map_toml import lacking, quoted, toml, value
 from twin.recording.mapping import FRAMED
 from twin.recording.several import files_in
-from twin.recording.suggest_actuators import actuator_columns
+from twin.recording.suggest_actuators import actuator_columns, means_of_two
 from twin.recording.suggest_clock import time_entry
 from twin.recording.suggest_entries import Entry, best_guesses, proposed
 from twin.recording.suggest_log import of_signals
 
 CLOCK_PROVED = re.compile(r'In the map: \[time\] unit = "(\w+)"\.')
 PROVED = re.compile(r'that is believed\. In the map: (frame|unit) = "([^"]+)" for (both|[a-z_]+)\.')
+ONE_SCREW = (
+    "With a ship file of one rudder and one propeller (twin init --propellers 2), in the place of the lines "
+    "of each actuator their means:"
+)
 
 
 def suggestion(paths: Sequence[Path], sources: Sources) -> str:
@@ -81,6 +85,9 @@ def written(files: Sequence[SeenColumns], time: dict[str, Any], columns: dict[st
         lines[-1] += f"  # {time['why']}"
     lines += ["", "[columns]"]
     lines += [f"{quoted(channel)} = {toml(e.keys)}  # {'; '.join(e.why)}" for channel, e in columns.items()]
+    means = means_of_two({channel: e.keys for channel, e in columns.items()})
+    if means:
+        lines += [f"# {ONE_SCREW}", *(f"# {quoted(c)} = {toml(keys)}" for c, keys in means.items())]
     return "\n".join(lines + lacking(columns)) + "\n"
 
 

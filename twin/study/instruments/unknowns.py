@@ -65,7 +65,7 @@ ALWAYS = ("current", "drift")  # never left out: every voyage has a stream, and 
 
 UNKNOWNS: tuple[InstrumentUnknown, ...] = (
     InstrumentUnknown(
-        "gnss_delay", "gnss_delay", "s", 1.0, "one", "age of position and velocity", late=True, varies=0.25
+        "gnss_delay", "gnss_delay", "s", 1.0, "one", "age of position and velocity", late=True, varies=0.2
     ),
     InstrumentUnknown(
         "smoothing",
@@ -75,13 +75,13 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         "one",
         "time constant of the smoothing of course and speed over ground",
         late=True,
-        varies=0.115,
+        varies=0.12,
     ),
     InstrumentUnknown(
-        "heading_delay", "heading_delay", "s", 1.0, "one", "age of the heading", late=True, varies=0.25
+        "heading_delay", "heading_delay", "s", 1.0, "one", "age of the heading", late=True, varies=0.4
     ),
     InstrumentUnknown(
-        "rate_delay", "rate_delay", "s", 1.0, "one", "age of the rate of turn", late=True, varies=0.25
+        "rate_delay", "rate_delay", "s", 1.0, "one", "age of the rate of turn", late=True, varies=0.28
     ),
     InstrumentUnknown(
         "log_delay", "log_delay", "s", 1.0, "one", "age of the speed through water", late=True, varies=0.48
@@ -93,19 +93,19 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.2,
         "one",
         "shown heading less the true one, on all headings",
-        varies=0.004,
+        varies=0.003,
     ),
     InstrumentUnknown(
-        "B", "deviation", "rad", 0.05, "one", "deviation with the sine of the heading", varies=0.055
+        "B", "deviation", "rad", 0.05, "one", "deviation with the sine of the heading", varies=0.05
     ),
     InstrumentUnknown(
-        "C", "deviation", "rad", 0.05, "one", "deviation with the cosine of the heading", varies=0.058
+        "C", "deviation", "rad", 0.05, "one", "deviation with the cosine of the heading", varies=0.05
     ),
     InstrumentUnknown(
-        "D", "deviation", "rad", 0.03, "one", "deviation with the sine of twice the heading", varies=0.06
+        "D", "deviation", "rad", 0.03, "one", "deviation with the sine of twice the heading", varies=0.05
     ),
     InstrumentUnknown(
-        "E", "deviation", "rad", 0.03, "one", "deviation with the cosine of twice the heading", varies=0.065
+        "E", "deviation", "rad", 0.03, "one", "deviation with the cosine of twice the heading", varies=0.055
     ),
     InstrumentUnknown(
         "gyro_bias", "gyro_bias", "rad/s", 0.002, "one", "shown rate of turn less the true one"
@@ -117,7 +117,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.1,
         "one",
         "shown rate of turn over the true one, less 1",
-        varies=0.065,
+        varies=0.055,
     ),
     InstrumentUnknown(
         "log_scale",
@@ -126,10 +126,16 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.2,
         "one",
         "shown speed through water over the true one, less 1",
-        varies=0.2,
+        varies=0.25,
     ),
     InstrumentUnknown(
-        "log_bias", "log_bias", "m/s", 0.1, "speed", "shown speed through water less the true one", varies=0.5
+        "log_bias",
+        "log_bias",
+        "m/s",
+        0.1,
+        "speed",
+        "shown speed through water less the true one",
+        varies=0.55,
     ),
     InstrumentUnknown(
         "log_angle",
@@ -138,7 +144,7 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.1,
         "one",
         "how far the log's axis points to starboard",
-        varies=0.025,
+        varies=0.035,
     ),
     InstrumentUnknown(
         "antenna_ahead",
@@ -156,14 +162,14 @@ UNKNOWNS: tuple[InstrumentUnknown, ...] = (
         0.1,
         "length",
         "antenna to starboard of where the settings have it",
-        varies=0.045,
+        varies=0.06,
     ),
     InstrumentUnknown(
-        "antenna_above", "mast", "m", 0.2, "length", "antenna above the axis of roll", varies=0.45
+        "antenna_above", "mast", "m", 0.2, "length", "antenna above the axis of roll", varies=0.35
     ),
-    InstrumentUnknown("vane", "vane", "rad", 0.1, "one", "shown wind angle less the true one", varies=0.22),
+    InstrumentUnknown("vane", "vane", "rad", 0.1, "one", "shown wind angle less the true one", varies=0.16),
     InstrumentUnknown(
-        "wind_scale", "anemometer", "-", 0.2, "one", "shown wind speed over the true one, less 1", varies=0.1
+        "wind_scale", "anemometer", "-", 0.2, "one", "shown wind speed over the true one, less 1", varies=0.07
     ),
     InstrumentUnknown(
         "leeway",
