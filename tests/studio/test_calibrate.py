@@ -112,7 +112,6 @@ def test_a_calibration_by_mouse_is_that_of_the_command_line(page, project, tmp_p
 WRITES = """
 import sys, time, pathlib
 from twin.studio.last_step import last_step
-from tests.thorough import thorough
 last_step("new.toml")
 print("writing", flush=True)
 time.sleep(0.5)

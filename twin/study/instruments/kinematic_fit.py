@@ -108,11 +108,12 @@ def fit(
 
 
 def from_day_to_day(red: arrow.ArrowReduced, widths: np.ndarray) -> arrow.ArrowReduced:
-    """What one voyage says of the ship's numbers theta where what it shows of them is theta + e,
+    """What one voyage says of the ship's numbers theta (P,) where what it shows of them is theta + e,
     e ~ N(0, T) with T of `day_to_day`; e integrated out, in the rows with T > 0:
 
         A' = A - A (A + T^-1)^-1 A,   g' = g - A (A + T^-1)^-1 g
-    """
+
+    `red`: its A (P, P) and g (P,); `widths` (P,): prior widths; each in the numbers' own units."""
     T = day_to_day()
     k = np.flatnonzero(np.diag(T) > 0.0)
     own = np.linalg.inv(T[np.ix_(k, k)] * np.outer(widths[k], widths[k]))
