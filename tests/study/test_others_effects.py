@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.thorough import one_of, thorough
+from tests.thorough import thorough
 
 ROOT = Path(__file__).parents[2]
 PROJECT = """[build-system]
@@ -180,7 +180,8 @@ def test_a_calibration_keeps_what_is_usual_of_the_effects_of_others(calibrated):
     assert usual["weather"]["RotorSail"] > 0.0
 
 
-@pytest.mark.parametrize("name", one_of(HIDDEN))
+@thorough
+@pytest.mark.parametrize("name", HIDDEN)
 def test_an_effect_of_others_is_named_and_added_like_ours(installed, calibrated, name):
     """Test: hidden in two voyages, the catalogue otherwise ours. Expected: it alone is named; added, what was
     held out is likelier, and its interval holds the size that was hidden."""
