@@ -90,6 +90,7 @@ def test_nothing_hidden_means_nothing_missing(diagnosed):
     assert result["missing"] == []
 
 
+@thorough
 def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_resembles_is_said(
     tanker, voyages
 ):

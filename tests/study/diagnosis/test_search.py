@@ -130,6 +130,7 @@ def test_a_set_that_was_never_weighed_can_be_judged(case):
     assert three in held.found
 
 
+@thorough
 def test_an_effect_and_a_part_of_it_are_no_pair(case):
     assert case.log_prior(("Current", "VaryingCurrent"), "usual") == -np.inf
     assert np.isfinite(case.log_prior(("VaryingCurrent",), "usual")) and np.isfinite(
@@ -168,6 +169,7 @@ def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkey
     assert held.next() != ("RudderWear",)
 
 
+@thorough
 def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having_earned_it(case):
     sizes = {u.label: u.sd for u in case.effects}
     for share, judged in ((0.02, []), (0.1, [("Current",)])):

@@ -167,6 +167,7 @@ def test_a_floor_of_one_fast_part_is_that_of_every_axis(tanker):
     assert one == three and one.white == (0.1, 0.1, 0.1)
 
 
+@thorough
 def test_each_axis_has_a_fast_part_of_its_own(judged):
     """Test: a place and a speed that swing by 8 cm and 5 cm/s about the path, a heading that does not.
     Expected: surge and sway are restless, and the yaw is trusted as before."""

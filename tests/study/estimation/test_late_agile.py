@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.study.conftest import DEG
-from tests.thorough import one_of
+from tests.thorough import one_of, thorough
 from twin.physics.effects import catalogue
 from twin.physics.effects.sensor_delay import SensorDelay
 from twin.physics.model import Model
@@ -77,6 +77,7 @@ def test_a_receiver_that_is_late_for_an_agile_boat_is_found_to_be_late(boat, lat
     assert 1e-3 < sd < 0.03
 
 
+@thorough
 @pytest.mark.parametrize("late_s", one_of([0.35, 0.75]))
 def test_how_late_a_receiver_is_is_found_between_two_steps_of_the_grid(boat, late_by, late_s):
     """Expected: as late as it is, by what the estimate knows of it, though what it shows seems less likely

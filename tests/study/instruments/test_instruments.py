@@ -9,6 +9,7 @@ import pytest
 
 import twin
 from tests.recording.conftest import motion, nmea_lines, sentence
+from tests.thorough import thorough
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.cli import main
@@ -104,6 +105,7 @@ def with_sternway(seconds=720.0, astern=(480.0, 600.0), slides=0.5):
     }  # fmt: skip
 
 
+@thorough
 def test_a_boat_that_slides_as_it_goes_astern_has_no_fault_of_its_compass():
     """Test: a minute or two of sternway in which the boat slides to starboard, with a healthy compass and
     with one that is 3 deg off. Expected: nothing, and that: how a ship drifts in a turn is told of one that
@@ -116,6 +118,7 @@ def test_a_boat_that_slides_as_it_goes_astern_has_no_fault_of_its_compass():
     near(found, "A", 0.05)
 
 
+@thorough
 def test_the_scale_of_a_gyro_is_told_only_where_the_receiver_turned_its_velocity_itself():
     """Test: a boat that zigzags within 25 deg, its gyro a fifth too much. Expected: that, with a velocity in the
     receiver's own axes; nothing of a scale where the compass turned it, whose deviation would do as well."""
@@ -148,6 +151,7 @@ def test_a_fault_is_found_with_its_size_and_by_its_name(healthy, fault, effect, 
     assert said["effect"] == effect and said["residuals"]
 
 
+@thorough
 def test_no_age_is_told_by_the_drift_in_a_turn_alone(healthy):
     """Test: heading and rate of turn two seconds late together, velocity turned by the compass, a log of one
     axis. Expected: of the two neither, since only how the ship drifts would tell; of a heading that is late
@@ -166,6 +170,7 @@ def test_two_faults_are_told_apart(healthy):
     near(found, "gyro_bias", 0.001)
 
 
+@thorough
 def test_whose_attitude_turned_the_velocity_is_the_same_on_all_voyages_of_a_ship(healthy):
     """A compass is two seconds late and the receiver's own attitude turned a noisy velocity: a zigzag tells,
     thirty seconds of it do not."""

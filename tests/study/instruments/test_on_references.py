@@ -77,6 +77,7 @@ def test_a_healthy_receiver_gives_the_ship_no_effect(days):
     assert "smoothing" not in found.record.faults and len(found.record.numbers["smoothing"].voyages) == 3
 
 
+@thorough
 def test_what_only_one_reference_shows_is_not_the_ships(days):
     found = asked(smoothed(days[0], 3.0), *days[1:])
     assert found.record.numbers["smoothing"].between > 0.5
@@ -89,12 +90,14 @@ def test_fewer_than_three_references_establish_nothing(days, voyages):
     assert "smoothing" in found.record.faults and established(found) == []
 
 
+@thorough
 def test_what_the_ship_file_has_already_is_refined_and_never_there_twice(days, three_seconds):
     again = own_instruments([sailed(smoothed(d, 2.0)) for d in days], three_seconds.ship).ship
     (only,) = (e for e in again.effects if type(e).__name__ == "ReceiverSmoothing")
     assert only.time == pytest.approx(2.0, abs=0.3)
 
 
+@thorough
 def test_a_slow_compass_on_every_reference_belongs_to_the_ship(days):
     found = own_instruments([sailed(late(d, HEADING, 2.0)) for d in days], load("kvlcc2"))
     (lag,) = (e for e in found.ship.effects if type(e).__name__ == "HeadingLag")

@@ -123,6 +123,7 @@ def test_a_number_of_which_nothing_that_was_recorded_tells_is_not_told(sailed, m
     assert "low95" not in to_table(made.ship)["effects"]["AntennaOffset"].get("above", {})
 
 
+@thorough
 def test_two_effects_are_fitted_together(sailed, make, kvlcc2):
     hidden = [find("Current").absent(kvlcc2).but(east=0.5), find("HullFouling").absent(kvlcc2).but(extra=0.4)]
     made = add(

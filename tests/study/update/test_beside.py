@@ -3,6 +3,7 @@
 import pytest
 
 from tests.study.conftest import voyage
+from tests.thorough import thorough
 from twin.commands import story
 from twin.physics.effects import find
 from twin.physics.ship import load
@@ -27,6 +28,7 @@ def test_an_added_number_and_its_interval_are_those_of_the_diagnosis():
     )
 
 
+@thorough
 def test_a_stream_that_may_change_is_fitted_when_asked_for_though_it_does_not_change(kvlcc2):
     """Test: a steady stream. Expected: beside another effect it is a steady one, and the one that may change
     is kept where it is asked for by name."""

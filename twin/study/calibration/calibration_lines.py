@@ -78,7 +78,8 @@ def _parts(result: dict[str, Any]) -> list[str]:
         (
             "antenna",
             "position is measured elsewhere than the ship file says, or the log's speed, whose place is "
-            "allowed for at import (docs/import.md): that is now part of the model",
+            "allowed for at import: that is now part of the model; if you know the antenna's place, give it "
+            "in the ship file (docs/import.md) and calibrate again",
         ),
         ("wind", "wind pushed the ship on these voyages: its force is now part of the model"),
         (

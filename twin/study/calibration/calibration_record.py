@@ -1,7 +1,7 @@
 """What a calibration found of the core, what the ship file keeps of it, and what --json holds."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -77,12 +77,18 @@ def remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
         ship,
         "effects",
         {
-            name: numbers
+            name: _given(ship, name, numbers) | numbers
             for name, numbers in core.numbers.items()
             if numbers and _found_here(name, ship, core)
         },
     )
     return replace(after, notes={**after.notes, "structural": structural})
+
+
+def _given(ship: Ship, name: str, found: Mapping[str, Any]) -> dict[str, Any]:
+    """What the ship file says of those numbers of a part that were not found here."""
+    entries = ship.notes.get("effects", {}).get(name, {})
+    return {k: entry for k, entry in entries.items() if k not in found}
 
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:

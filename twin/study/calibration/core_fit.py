@@ -21,7 +21,7 @@ from twin.study.calibration.calibration_record import (
 from twin.study.calibration.held_out import HeldOut, errors
 from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.own_instruments import own_instruments
-from twin.study.calibration.parts import placed, significant, with_or_without_wind
+from twin.study.calibration.parts import given, placed, significant, with_or_without_wind
 from twin.study.calibration.usual import usual
 from twin.study.calibration.ways import FittedShip, best_way
 from twin.study.estimation.columns import Unknown, core_unknowns
@@ -171,7 +171,7 @@ def _moved(found: Core, ship: Ship, begun: Effect) -> Core:
     return replace(
         found,
         effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, of_antenna))),
-        antenna=of_antenna(**{k: number["value"] for k, number in numbers.items()}),
+        antenna=begun.but(**{k: number["value"] for k, number in numbers.items()}),
     )
 
 
@@ -205,7 +205,11 @@ def _rough(
     """`curve`: numbers of the compass's deviation, which the ship then has, that are as open as in any
     ship's."""
     model, known = Model.of(ship), of_ship(ship)
-    own = [u for u in instruments(model, known) if not curve or u.owner != PARTS["compass"].__name__]
+    own = [
+        u
+        for u in instruments(model, known)
+        if not ((curve and u.owner == PARTS["compass"].__name__) or given(ship, u))
+    ]
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *own, *curve))
     if begun:
         tracks = _in_its_sea(sailed, begun.model, progress)

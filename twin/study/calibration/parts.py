@@ -6,13 +6,14 @@ has it (a receiver that reports its centre of gravity, a lever arm left at zero)
 pushed it, and a small ship seldom has a calm; left out, it would bend the core, and the noise model would
 grow until it hides what is missing. Kept in mind alone, either would leave every prediction off."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from twin.physics.effect import Effect
 from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.calibration.held_out import HeldOut, errors, size
+from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import Catalogue, Fit, fit
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.of_effect import effect_unknowns
@@ -39,9 +40,18 @@ def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue
     return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
 
 
+def given(ship: Ship, unknown: Unknown) -> bool:
+    """Whether it is a number of the antenna's place that the owner knows: his ship file has it without a
+    standard error, as no fit does. It stays what it is."""
+    entries = ship.notes.get("effects", {}).get(unknown.owner, {})
+    entry = entries.get(unknown.name) if unknown.owner == of_role("antenna").__name__ else None
+    return entry is not None and not (isinstance(entry, Mapping) and "sd" in entry)
+
+
 def significant(found: Fit) -> Effect | None:
     """Where the antenna was found, if that is clearly not where the fit began."""
     antenna = of_role("antenna")
+    begun = next((e for e in found.model.effects if isinstance(e, antenna)), antenna.absent(found.model.ship))
     numbers = [
         (u, v, sd)
         for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True)
@@ -49,7 +59,7 @@ def significant(found: Fit) -> Effect | None:
     ]
     if not any(abs(v - u.centre) > MOVED_SE * sd for u, v, sd in numbers):
         return None
-    return antenna(**{u.name: float(v) for u, v, _ in numbers})
+    return begun.but(**{u.name: float(v) for u, v, _ in numbers})
 
 
 def placed(ship: Ship, antenna: Effect | None, held_out: HeldOut) -> Ship:
