@@ -62,7 +62,12 @@ COMPARE = (
 CANDIDATE = (
     JsonKey("effect", "", "name of the effect", "one is likely"),
     JsonKey("belongs_to", "", "ship, instrument or voyage", FACTS),
-    JsonKey("probability", "1", "how often such a cause was there on random ships", "one is likely"),
+    JsonKey(
+        "probability",
+        "1",
+        "how often such a cause was there on random ships; of water and weather, its posterior",
+        "one is likely",
+    ),
     JsonKey("posterior", "1", "that it is there, if the noise model is true", FACTS),
     JsonKey("on_references", "1", "share of the references with as much of it by kinematics, or null", FACTS),
     JsonKey("parameters[].name", "", "one of its numbers; `NAME of VOYAGE`: that voyage's", "one is likely"),
@@ -85,11 +90,14 @@ CANDIDATE = (
     JsonKey("together_with[]", "", "effects that stand beside it", "there are some"),
     JsonKey("cannot_be_told_from[]", "", "effects that would explain nearly as much", "there are some"),
     JsonKey("says", "", "what the effect is, in a sentence", "one is likely"),
-    JsonKey("over_time[].voyage", "", "a part of a voyage", NAMED),
-    JsonKey("over_time[].start_s", "s", "where the part begins", NAMED),
-    JsonKey("over_time[].end_s", "s", "where it ends", NAMED),
-    JsonKey("over_time[].share", "-", "size of the effect there, over its estimate", NAMED),
-    JsonKey("over_time[].sd", "-", "standard error of that", NAMED),
+)
+LIKELIEST = "the likeliest hypothesis holds it"
+OVER_TIME = (
+    JsonKey("voyage", "", "a part of a voyage", LIKELIEST),
+    JsonKey("start_s", "s", "where the part begins", LIKELIEST),
+    JsonKey("end_s", "s", "where it ends", LIKELIEST),
+    JsonKey("share", "-", "size of the effect there, over its estimate", LIKELIEST),
+    JsonKey("sd", "-", "standard error of that", LIKELIEST),
 )
 DIAGNOSE = (
     *ABOUT,
@@ -104,6 +112,7 @@ DIAGNOSE = (
     JsonKey("probabilities.nothing_missing", "1", "how often no cause was there on random ships so answered"),
     JsonKey("probabilities.unknown", "1", "how often something without a name was there"),
     *under("candidates[]", CANDIDATE),
+    *under("candidates[].over_time[]", OVER_TIME),
     *under("resembles[]", CANDIDATE, "known by its form alone: "),
     JsonKey("rivals[].effects[]", "", "one of the likeliest hypotheses", FACTS),
     JsonKey("rivals[].scenario", "", "its noise scenario", FACTS),
@@ -111,8 +120,14 @@ DIAGNOSE = (
     JsonKey("rivals[].error_m", "m", "its open-loop error on held-out parts", FACTS),
     JsonKey("answer.not_named.*", "", "why an effect that is likely is not named", FACTS),
     JsonKey("answer.lasting[]", "", "named effects that hold on another day, for `twin add`", FACTS),
-    JsonKey("weather[].*", "", "water and weather of these voyages, as `candidates[]`", FACTS),
-    JsonKey("facts.*", "", "the facts that decided (twin/study: facts.py)", FACTS),
+    JsonKey(
+        "weather[].*",
+        "",
+        "today's water and weather: effect, belongs_to, probability, parameters, typical_force and stream "
+        "as in `candidates[]`",
+        FACTS,
+    ),
+    JsonKey("facts.*", "", "the facts, those that decide and those that explain (facts.py)", FACTS),
     JsonKey("moments[].voyage", "", "a transient disturbance: its voyage", "there is one"),
     JsonKey("moments[].start_s", "s", "where it begins", "there is one"),
     JsonKey("moments[].end_s", "s", "where it ends", "there is one"),

@@ -29,9 +29,9 @@ def mirrored(t):
 @pytest.mark.parametrize("name", list(form.TERMS))
 def test_every_term_pushes_a_mirrored_ship_the_mirrored_way(sailed, name):
     t, model = sailed
-    here = form.accelerations(t, model, name)
+    here = form.accelerations(t, model)[name]
     assert np.abs(here).max() > 0.0 or name.startswith("X_at")  # of speeds at which it never sailed
-    assert form.accelerations(mirrored(t), model, name) == pytest.approx(here * MIRROR)
+    assert form.accelerations(mirrored(t), model)[name] == pytest.approx(here * MIRROR)
 
 
 @pytest.mark.parametrize("name", ["X_vvvv", "Y_vvv", "N_vvr", "q_vv"])
@@ -42,17 +42,17 @@ def test_in_a_stream_every_term_is_what_it_would_be_at_the_speed_through_the_wat
     state[:, 3] -= north * np.cos(psi) + east * np.sin(psi)
     state[:, 4] -= east * np.cos(psi) - north * np.sin(psi)
     stream = model.but(find("Current")(north=north, east=east))
-    assert form.accelerations(t, stream, name) == pytest.approx(
-        form.accelerations(replace(t, state=state), model, name)
+    assert form.accelerations(t, stream)[name] == pytest.approx(
+        form.accelerations(replace(t, state=state), model)[name]
     )
-    assert form.accelerations(t, stream, name) != pytest.approx(form.accelerations(t, model, name), rel=0.02)
+    assert form.accelerations(t, stream)[name] != pytest.approx(form.accelerations(t, model)[name], rel=0.02)
 
 
 def test_without_a_measured_heel_its_terms_are_nothing(sailed):
     t, model = sailed
     blind = replace(t, weather={k: w for k, w in t.weather.items() if k != "phi"})
     for name in ("Y_phi", "N_p", "N_pdot"):
-        assert not form.accelerations(blind, model, name).any()
+        assert not form.accelerations(blind, model)[name].any()
 
 
 def test_the_cubic_terms_are_what_a_published_polynomial_has_and_the_modulus_form_has_not():
@@ -120,5 +120,5 @@ def test_the_rudder_of_a_ship_of_actuators_has_the_same_terms(sailed):
     parts = Model(replace(ship, actuators=(main,)), own.effects)
     told = replace(t, orders={"main.rate": t.n, "main.angle": t.delta})
     for name in form.RUDDER:
-        assert form.accelerations(told, parts, name) == pytest.approx(form.accelerations(t, own, name))
-        assert np.abs(form.accelerations(told, parts, name)).max() > 0.0
+        assert form.accelerations(told, parts)[name] == pytest.approx(form.accelerations(t, own)[name])
+        assert np.abs(form.accelerations(told, parts)[name]).max() > 0.0

@@ -40,27 +40,23 @@ def tossing(tanker, voyages):
 @pytest.mark.parametrize("name", wave_induced.TERMS)
 def test_in_calm_water_there_is_none_of_it(tossing, model, name):
     calm = replace(tossing, swell=None)
-    assert (
-        not wave_induced.accelerations(calm, model, name).any()
-        and not wave_induced.readings(calm, model, name).any()
-    )
+    pushed, read = wave_induced.columns(calm, model)[name]
+    assert not pushed.any() and not read.any()
 
 
 @pytest.mark.parametrize("name", wave_induced.HELM)
 def test_a_mirrored_helm_answers_the_mirrored_way(tossing, model, name):
     state = tossing.state * np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
     mirrored = replace(tossing, state=state, delta=-tossing.delta)
-    here = wave_induced.accelerations(tossing, model, name)
-    assert np.abs(here[:, 2]).max() > 0.0 and wave_induced.accelerations(
-        mirrored, model, name
-    ) == pytest.approx(here * MIRROR)
+    here, there = (wave_induced.columns(t, model)[name][0] for t in (tossing, mirrored))
+    assert np.abs(here[:, 2]).max() > 0.0 and there == pytest.approx(here * MIRROR)
 
 
 def test_what_is_left_open_of_the_helm_is_what_it_does_in_time_with_the_waves(tossing, model):
     """Test: the same voyage with a helm that was laid over by five degrees all the way. Expected: the same,
     but for what a stronger swing meets."""
     over = replace(tossing, delta=tossing.delta + np.radians(5.0))
-    one, other = (wave_induced.accelerations(t, model, "helm")[INSIDE, 2] for t in (tossing, over))
+    one, other = (wave_induced.columns(t, model)["helm"][0][INSIDE, 2] for t in (tossing, over))
     assert np.abs(other - one).max() < 0.1 * np.abs(one).max()
     # without the answer
     helm = replace(
@@ -75,7 +71,7 @@ def test_a_gear_that_is_a_little_late_in_waves_alone_is_the_helm_a_quarter_of_a_
     late = accelerations(tossing, model.but(find("SteeringLag")(delay=1.0, travel_time=0.0))) - accelerations(
         tossing, model
     )
-    quarter = wave_induced.accelerations(tossing, model, "helm_earlier")
+    quarter = wave_induced.columns(tossing, model)["helm_earlier"][0]
     share = 2.0 * np.pi * 1.0 / PERIOD_S  # of a radian
     assert late[INSIDE, 2] == pytest.approx(
         -share * quarter[INSIDE, 2], abs=0.2 * share * np.abs(quarter).max()
@@ -89,7 +85,7 @@ def test_a_swing_in_sway_in_time_with_the_yaw_is_seen_as_an_antenna_ahead_is_in_
     still = wave_induced.steadied(tossing)
     shown = [readings(t.situation(), m) for t in (tossing, still) for m in (model.but(ahead), model)]
     of_waves = (shown[0] - shown[1]) - (shown[2] - shown[3])
-    term = 0.1 * wave_induced.readings(tossing, model, "sway")
+    term = 0.1 * wave_induced.columns(tossing, model)["sway"][1]
     for column in (0, 1, 4):  # x, y, v
         assert term[INSIDE, column] == pytest.approx(
             of_waves[INSIDE, column], abs=0.05 * np.abs(term[:, column]).max()

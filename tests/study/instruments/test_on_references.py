@@ -59,12 +59,17 @@ def sailed(columns):
     return SimpleNamespace(voyage=made, track=SimpleNamespace(name=made.name, t=made.time_s - made.time_s[0]))
 
 
+def noting(entry):
+    """A ship whose file keeps this of its instruments."""
+    return SimpleNamespace(name="a tanker", notes={"instruments": entry})
+
+
 def test_a_receiver_that_smooths_on_every_reference_belongs_to_the_ship(three_seconds):
     found = three_seconds
     effects = {type(e).__name__: e for e in found.ship.effects}
     assert set(found.written) == {"ReceiverSmoothing"} and set(effects) >= {"ReceiverSmoothing"}
     assert effects["ReceiverSmoothing"].time == pytest.approx(3.0, abs=0.3)
-    kept = KinematicRecord.of_notes(found.ship.notes)
+    kept = KinematicRecord.of_ship(found.ship)
     assert kept == found.record
     assert all(v.value == pytest.approx(3.0, abs=0.3) for v in kept.numbers["smoothing"].voyages)
     assert found.ship.notes["effects"]["ReceiverSmoothing"]["time"]["sd"] > 0.0
@@ -160,15 +165,11 @@ def test_counted_from_the_other_instrument_an_age_is_what_the_first_was_earlier_
 def test_the_record_says_what_turned_the_velocity_where_all_references_agree(days, frames, velocity_by):
     record = asked(*days, frames=frames).record
     assert record.velocity_by == velocity_by
-    assert KinematicRecord.of_notes({"instruments": record.entry()}) == record
+    assert KinematicRecord.of_ship(noting(record.entry())) == record
 
 
 @thorough
 def test_a_record_from_before_says_nothing_of_it(days):
     entry = asked(*days).record.entry()
-    assert (
-        KinematicRecord.of_notes(
-            {"instruments": {k: v for k, v in entry.items() if k != "velocity_by"}}
-        ).velocity_by
-        == ""
-    )
+    before = KinematicRecord.of_ship(noting({k: v for k, v in entry.items() if k != "velocity_by"}))
+    assert before.velocity_by == ""

@@ -11,6 +11,7 @@ from twin.physics.effect import Effect
 from twin.physics.effects import of_ship, unnamed_of
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.physics.ship_notes import positive, read_from
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import MOST_SEGMENTS, ODDS, ODDS_UNNAMED, ODDS_WEATHER, Case, settle
 from twin.study.diagnosis.open_loop_check import horizon_s
@@ -34,7 +35,6 @@ from twin.study.reference.nuisance import (
 from twin.study.reference.reading import read_lines
 from twin.study.reference.sailed import samples_hash
 from twin.study.reference.seaway import swung
-from twin.study.reference.structural_table import positive, read_from
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.reference.weather_baseline import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
@@ -202,7 +202,7 @@ def _felt_before(
     """How hard measured weather pushed it on the reference voyages, or on those of its calibration."""
     if references:
         return strengths([track(v, model.ship) for v in references], model, catalogue)
-    with read_from(model.ship, "weather"):
+    with read_from(model.ship, "[structural] weather"):
         kept = model.ship.notes.get("structural", {}).get("weather", {})
         return {name: float(strength) for name, strength in kept.items()}
 
@@ -210,7 +210,7 @@ def _felt_before(
 def _temper(ship: Ship) -> float:
     """How much less than its likelihood a voyage tells, beside all that is usual on this ship."""
     notes = ship.notes.get("structural", {})
-    with read_from(ship, "temper"):
+    with read_from(ship, "[structural] temper"):
         return positive(notes.get("temper_beside", notes.get("temper", TEMPER)))
 
 

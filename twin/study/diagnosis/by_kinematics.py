@@ -72,7 +72,7 @@ def instrument_suspected(case: Case, effects: Sequence[str]) -> bool:
 
 def kinematics(voyages: Sequence[Voyage], ship: Ship) -> AskedKinematics | None:
     """Of these voyages; None where they lack heading, or too much of it: kinematics say nothing."""
-    record = KinematicRecord.of_notes(ship.notes)
+    record = KinematicRecord.of_ship(ship)
     try:
         clock, own = (record.clock, record.own) if record else (None, None)
         found = estimate(voyages, float(ship.L_pp), clock=clock, own=own)

@@ -65,7 +65,9 @@ class Case:
     linearised: Model  # the same with the core about which the tracks are linearised (`one_step_core`)
     catalogue: dict[str, type[Effect]]
     candidates: tuple[str, ...]
-    unknowns: tuple[Unknown, ...]  # core, then the parameters of the candidates and of all instruments
+    # the core and what it leaves out (form, sea, rough), the candidates' numbers, what else lasts on this
+    # ship, and how late its instruments are (`nuisance.with_effects`)
+    unknowns: tuple[Unknown, ...]
     effects: tuple[Unknown, ...]  # parameters of the candidates
     nuisance: Nuisance
     noise_model: NoiseModel  # what is left when all unknowns explain what they can

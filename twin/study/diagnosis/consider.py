@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.ship_notes import read_from
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.criteria import CLEAR, SURE
@@ -18,9 +19,8 @@ from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
 from twin.study.diagnosis.overtime import varying
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
-from twin.study.estimation.rarity import deviations
+from twin.study.estimation.rarity import P95, deviations
 from twin.study.estimation.start import wave_period_s
-from twin.study.instruments.findings import P95
 from twin.study.reference.evidence import Hypothesis
 from twin.study.reference.healthy import Healthy, always_weighed, compared, score
 from twin.study.reference.seaway import at_sea
@@ -119,7 +119,8 @@ def of_any_day(case: Case, found: Found) -> tuple[str, ...]:
 def against_healthy(case: Case) -> Healthy | None:
     """How rare these voyages would be on this ship in health, by its reference voyages
     (reference/healthy.py)."""
-    scores = case.model.ship.notes.get("structural", {}).get("left_out_scores", [])
+    with read_from(case.model.ship, "[structural] left_out_scores"):
+        scores = list(map(float, case.model.ship.notes.get("structural", {}).get("left_out_scores", [])))
     noise_model = noise_model_of(case.model.ship, "beside")
     if not scores or noise_model is None:
         return None

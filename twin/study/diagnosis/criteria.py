@@ -1,8 +1,8 @@
 """The numbers that decide, each with its unit and the question that it answers.
 
-NAMED, NEARLY, SIGNIFICANT and USUAL were fitted with families of ships held out (bench/fleet,
-docs/results/judgement.md); the others are conventions. The table in
-docs/diagnosis.md is made of these lines (docs/decision_page.py).
+NAMED, SIGNIFICANT and USUAL were fitted with families of ships held out (bench/fleet,
+docs/results/judgement.md); NEARLY is what 98 % of their healthy voyages ended within when it was set; the
+others are conventions. The table in docs/diagnosis.md is made of these lines (docs/decision_page.py).
 """
 
 # posterior probabilities [1]
@@ -13,7 +13,7 @@ LOST = 0.5  # likelier than not: of something without a name, from which none is
 # log Bayes factor [natural log]
 CLEAR = 3.0  # 20 to 1 (Kass & Raftery 1995): by which a change is asked for, or two effects told apart
 # ratios of open-loop errors [1]
-NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (as fitted)
+NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (when it was set)
 MOSTLY = 0.5  # share of the error without it that an explanation may leave although more is missing
 BETTER = 0.05  # share by which a force must reduce the open-loop error; less is scatter
 # others

@@ -22,7 +22,7 @@ from twin.study.diagnosis.consider import Considered, joint_significance
 from twin.study.diagnosis.further import with_further
 from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
-from twin.study.diagnosis.overtime import over_time
+from twin.study.diagnosis.overtime import PARTS, over_time
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.set_and_rate import set_and_rate
 from twin.study.diagnosis.tell_diagnosis import SOME
@@ -125,7 +125,8 @@ def _listed(told: SearchAnswer, progress: Callable[[str], None]) -> list[dict[st
     listed = [c for c in (_candidate(told, name, p[name]) for name in shown) if c]
     if w.best.effects:
         progress("estimating each part of the voyages by itself")
-        parts = over_time(told.case, told.found[w.best.effects], w.best.effects)
+        most = max(1, PARTS // len(told.case.lines))
+        parts = over_time(told.case, told.found[w.best.effects], w.best.effects, most)
         for c in listed:
             if c["effect"] in parts:
                 c["over_time"] = parts[c["effect"]]

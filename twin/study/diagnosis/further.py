@@ -18,9 +18,9 @@ from twin.study.diagnosis.consider import Considered
 from twin.study.diagnosis.criteria import CLEAR
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.open_loop_check import held_out_error
-from twin.study.diagnosis.refine import Found, Sets, refine
+from twin.study.diagnosis.refine import Found, Sets, first_guess, largest, refine
 from twin.study.diagnosis.search import EARNED, MAX_CAUSES
-from twin.study.reference.evidence import boxed, posterior, weigh_with
+from twin.study.reference.evidence import posterior, weigh_with
 
 
 def with_further(
@@ -104,10 +104,10 @@ def _fitted(first: SearchAnswer, chosen: Sets) -> Found:
     first-order guess about the first answer."""
     case, found = first.case, first.found
     parts = [f for s, f in found.items() if set(s) < set(chosen) and f.reduced is not None]
-    part = max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight), default=None)
+    part = largest(parts)
     start = part or found[first.shown]
     about = start.reduced or case.reduced(case.lines, case.scenarios([start.hypothesis.scenario]))[0]
-    z = boxed(about, chosen, posterior(about, chosen)).z
+    z = first_guess(about, chosen)
     return refine(case, chosen, start.hypothesis.scenario, z, (), part=part)[0]
 
 
@@ -144,6 +144,7 @@ def _considered(first: SearchAnswer, again: SearchAnswer, new: Sequence[str], ch
         error_nothing=before.facts.error_nothing,
         power=before.facts.power,
         reached=before.facts.reached,
+        comes_and_goes=max(before.facts.comes_and_goes, after.facts.comes_and_goes),
         likeliest=chosen,
         explanation=chosen,
         causes=(*(c for c in before.facts.causes if c.effect in first.causes), *of_new),

@@ -11,7 +11,7 @@ from twin.study.diagnosis.facts import Cause, Facts
 
 @dataclass(frozen=True)
 class CauseRule:
-    """One row: if the condition holds, this cause is not named, for this reason (in words: sentences.py)."""
+    """One row: if the condition holds, this cause is not named, for this reason (in words: reasons.py)."""
 
     reason: str
     condition: Callable[[Facts, Cause], bool]

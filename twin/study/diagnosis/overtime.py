@@ -21,19 +21,21 @@ from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import innovate
 from twin.study.reference.evidence import reduce
 
-PARTS = 4  # at most; a part holds whole segments of the filter
+PARTS = 4  # of a voyage, at most; a part holds whole segments of the filter
 FORM = 0.25  # a share that differs by so much is the form of the effect, not its time
 DIFFERENT_SD = 4.0  # standard deviations by which two parts must differ
 
 
-def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[dict[str, Any]]]:
+def over_time(
+    case: Case, found: Found, names: Sequence[str], most: int = PARTS
+) -> dict[str, list[dict[str, Any]]]:
     """For each of these effects of the hypothesis: voyage, start_s, end_s, share and its standard deviation,
-    part by part."""
+    part by part, `most` of each voyage."""
     lines, at = standing(case, found)
     normal = innovate(lines, case.scenarios([found.hypothesis.scenario], found.doubt))[0]
     directions = np.array([np.where([u.owner == name for u in case.effects], at, 0.0) for name in names])
     out: dict[str, list[dict[str, Any]]] = {name: [] for name in names}
-    for rows in _parts([track for track, _, _ in normal.where]):
+    for rows in _parts([track for track, _, _ in normal.where], most):
         keep = np.isin(np.arange(len(normal.where)), rows)
         part = reduce(normal.only(keep), case.nuisance, case.unknowns, case.effects, case.temper, at)
         A = directions @ part.A @ directions.T + 1e-6 * np.eye(len(names))
@@ -46,9 +48,9 @@ def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[
     return out
 
 
-def _parts(voyage: Sequence[int]) -> list[np.ndarray]:
+def _parts(voyage: Sequence[int], most: int) -> list[np.ndarray]:
     """Segments in groups that follow each other, of one voyage each."""
-    of, most = np.array(voyage), max(1, PARTS // len(set(voyage)))
+    of = np.array(voyage)
     rows = [np.flatnonzero(of == i) for i in dict.fromkeys(voyage)]
     return [part for r in rows for part in np.array_split(r, min(most, r.size))]
 

@@ -4,7 +4,7 @@ each reason of the decision."""
 from typing import Any
 
 from twin.num import num, percent
-from twin.study.diagnosis.criteria import CERTAIN, NAMED, SIGNIFICANT
+from twin.study.diagnosis.criteria import CERTAIN, NAMED, SIGNIFICANT, USUAL
 
 Result = dict[str, Any]
 ROUGHLY = "in weather like this, whose force is known only roughly, that may be the weather's effect"
@@ -19,9 +19,10 @@ def why_not(c: Result, reason: str) -> str:
         else "not computed"
     )
     return {
-        "not_in_explanation": "the explanation that leaves least does without it",
+        "not_in_explanation": "the likeliest explanation of where the ship went does without it, or there "
+        "is none",
         "as_on_references": "single causes explained as much of healthy reference voyages of this ship"
-        if c.get("on_references") is None
+        if (c.get("on_references") or 0.0) < USUAL
         else "the instruments, held against each other without the ship, show no more of it than on the "
         "reference voyages (twin instruments tells what they show)",
         "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "

@@ -4,7 +4,7 @@ An effect is granted that its form is only roughly right: a share of its own for
 one of DOUBTS under which the voyages are most probable (no share of what the ship meets because a stream
 carries it: that is the hull's own force)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -54,6 +54,17 @@ class Found:
     def on(self, voyage: int) -> Model:
         """The model on one of the voyages."""
         return self.models[voyage] if self.models else self.model
+
+
+def largest(parts: Iterable[Found]) -> Found | None:
+    """Of what was found, what holds most effects, and of these the likeliest; None of none."""
+    return max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight), default=None)
+
+
+def first_guess(about: Reduced, chosen: Sets) -> np.ndarray:
+    """(Q,) the numbers of a set as the voyages have them to first order, inside their boxes, in prior
+    widths."""
+    return boxed(about, chosen, posterior(about, chosen)).z
 
 
 def refine(

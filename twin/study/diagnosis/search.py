@@ -20,9 +20,9 @@ from twin.study.diagnosis.criteria import NEARLY
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.hollow import hollow
 from twin.study.diagnosis.open_loop_check import OpenLoopCheck, open_loop_check
-from twin.study.diagnosis.refine import Found, Sets, refine
+from twin.study.diagnosis.refine import Found, Sets, first_guess, largest, refine
 from twin.study.diagnosis.steady import simpler, steady
-from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_sets
+from twin.study.reference.evidence import Hypothesis, Reduced, posterior, weigh_sets
 
 MAX_CAUSES = 3  # causes at once
 AT_FIRST = 2  # of which so many in the linear pass; one more only beside what was relinearised
@@ -221,10 +221,7 @@ class Hypotheses:
     def judge(self, chosen: Sets) -> None:
         """Enter what the voyages say of this set, and of every set with one effect more, about its own
         size."""
-        start = max(
-            (self.found[s] for s in self.found if set(s) < set(chosen)),
-            key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight),
-        )
+        start = largest(self.found[s] for s in self.found if set(s) < set(chosen)) or self.found[()]
         # of three, one in another's place was never weighed
         guess = next((h for h in self.weighed() if h.effects == chosen), None)
         scenario, hoped = (
@@ -233,7 +230,7 @@ class Hypotheses:
         part = start.hypothesis.effects
         # where a part of the set was found to stand
         about = start.reduced if part and start.reduced else self.scenarios[scenario]
-        z = boxed(about, chosen, posterior(about, chosen)).z
+        z = first_guess(about, chosen)
         wider = self.case.candidates if len(self.case.causes(chosen)) < MAX_CAUSES else self.case.weather
         self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, start)
         if hollow(self.case, self.found[chosen]):

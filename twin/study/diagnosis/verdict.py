@@ -14,12 +14,13 @@ from twin.study.diagnosis.criteria import CERTAIN, CLEAR, LOST, SURE
 from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
 from twin.study.estimation.box import at_an_end
+from twin.study.estimation.rarity import P95
 from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
 
 LARGEST_GROUP = 4  # effects that may stand for each other and still be an answer
 
-MOST_SAID = 0.99  # probability beyond which nothing is told: no more ships than that were ever asked
+MOST_SAID = 0.99  # probability beyond which no posterior is told: no more ships than that were ever asked
 RIVALS = 5  # hypotheses that are told beside the likeliest
 
 
@@ -165,7 +166,7 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
         if u.owner == name and (params[u.name].input in {None, *recorded}):
             value = u.centre + u.sd * found.z[i]
             sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), params[u.name].form * found.z[i]))
-            low, high = value - 1.96 * sd, value + 1.96 * sd
+            low, high = value - P95 * sd, value + P95 * sd
             out.append(
                 {
                     "name": u.full_name,

@@ -14,6 +14,7 @@ from twin.physics.actuators import NUMBERS, OWN, KeptForces
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
+from twin.physics.ship_notes import positive, read_from
 from twin.study.estimation import form, rough, wave_induced
 from twin.study.estimation.respond import (
     accelerations,
@@ -114,8 +115,12 @@ def core_unknowns(model: Model) -> list[Unknown]:
     out = []
     for name, value, m, also in _learnable(model.ship):
         entry = own.get(name, {})
-        sd = entry.get("prior_sd", None) if isinstance(entry, dict) else None
-        sd = float(sd) if sd else max(m["sd"], 0.15 * abs(value) if "." not in name else 0.0)
+        told = entry.get("prior_sd") if isinstance(entry, dict) else None
+        if told is None:
+            sd = max(m["sd"], 0.15 * abs(value) if "." not in name else 0.0)
+        else:
+            with read_from(model.ship, f"[derivatives] prior_sd of {name}"):
+                sd = positive(told)
         out.append(Unknown("core", name, m["unit"], value, sd, m["lo"], m["hi"], also=also))
     return out
 
@@ -169,10 +174,10 @@ def columns(
     reading = readings(s, prompt)
     A: np.ndarray = np.zeros((len(track), 3, len(unknowns)), dtype)
     R: np.ndarray = np.zeros((len(track), 8, len(unknowns)), dtype)
-    missing, missed = (
-        track.missing(),
-        rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {},
-    )
+    missing, owners = track.missing(), {u.owner for u in unknowns}
+    missed = rough.accelerations(track, model) if ROUGH in owners else {}
+    formed = form.accelerations(track, model) if FORM in owners else {}
+    in_waves = wave_induced.columns(track, model) if SEA in owners else {}
     for j, unknown in enumerate(unknowns):
         if same and j in same:
             A[:, :, j], R[:, :, j] = same[j]
@@ -185,13 +190,10 @@ def columns(
             R[:, late, j] = -np.gradient(reading[:, late], track.h, axis=0)
             continue
         if unknown.owner == FORM:
-            A[:, :, j] = form.accelerations(track, model, unknown.name)
+            A[:, :, j] = formed[unknown.name]
             continue
         if unknown.owner == SEA:
-            A[:, :, j], R[:, :, j] = (
-                wave_induced.accelerations(track, model, unknown.name),
-                wave_induced.readings(track, model, unknown.name),
-            )
+            A[:, :, j], R[:, :, j] = in_waves[unknown.name]
             continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track

@@ -75,17 +75,25 @@ TERMS = {name: width for name, (_, width, _) in HULL.items()} | {
 }
 
 
-def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
-    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term."""
+def accelerations(track: Track, model: Model) -> dict[str, np.ndarray]:
+    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of each term."""
     ship, a, zero = model.ship, _along(track, model), np.zeros(len(track))
-    if name in HULL:
-        axis, _, term = HULL[name]
-        force = 0.5 * ship.rho * ship.L_pp * ship.T * _speed(track, model) ** 2 * term(a)
-        tau = {"X": (force, zero, zero), "Y": (zero, force, zero), "N": (zero, zero, force * ship.L_pp)}[axis]
-    else:
-        alone = _rudders(track, model)
-        tau = tuple(part * RUDDER[name][1](a) for part in alone)  # type: ignore[assignment]
-    return np.column_stack([np.broadcast_to(x, zero.shape) for x in core.accelerations(*tau, model.c)])
+    usual = 0.5 * ship.rho * ship.L_pp * ship.T * _speed(track, model) ** 2
+    tau: dict[str, core.Tau] = {}
+    for name, (axis, _, term) in HULL.items():
+        force = usual * term(a)
+        tau[name] = {
+            "X": (force, zero, zero),
+            "Y": (zero, force, zero),
+            "N": (zero, zero, force * ship.L_pp),
+        }[axis]
+    X, Y, N = _rudders(track, model)
+    for name, (_, term) in RUDDER.items():
+        tau[name] = X * term(a), Y * term(a), N * term(a)
+    return {
+        name: np.column_stack([np.broadcast_to(x, zero.shape) for x in core.accelerations(*t, model.c)])
+        for name, t in tau.items()
+    }
 
 
 def _rudders(track: Track, model: Model) -> core.Tau:

@@ -138,7 +138,7 @@ def _thinned(t: Track) -> Track:
     matter).
     """
     rows = np.flatnonzero(t.whole)
-    rows = rows[:: max(1, rows.size // ROWS)]
+    rows = rows[:: max(1, -(-rows.size // ROWS))]
     return t.where(rows)
 
 

@@ -25,6 +25,11 @@ class Normal:
         """A (P, P), b (P,) and ee of all segments together, per unit of the unknowns."""
         return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
 
+    def voyages(self) -> np.ndarray:
+        """(S,) to which voyage each segment belongs, by its place; of a single one, to which half."""
+        of = np.array([track for track, _, _ in self.where])
+        return of if np.unique(of).size > 1 else (np.arange(of.size) * 2) // max(of.size, 1)
+
     def in_terms_of(self, B: np.ndarray) -> "Normal":
         """The same in other unknowns (Q,), in prior widths, of which these are B (P, Q) times them."""
         return replace(self, A=B.T @ self.A @ B, b=self.b @ B)

@@ -5,11 +5,10 @@ ground into the ship's axes: in the reading itself, and in that turning (SensorF
 ship's references told what turns it (instruments/on_references.py), the two are one number, or the second is
 none; with two free numbers an antenna elsewhere is likelier than a late receiver."""
 
-from collections.abc import Mapping
-from typing import Any
-
 from twin.physics.effect import Effect, Param, SensorFault
 from twin.physics.model import Model
+from twin.physics.ship import Ship
+from twin.physics.ship_notes import read_from
 from twin.study.estimation.columns import Unknown
 
 NOTE = "instruments"  # where a ship file keeps what its references told of them
@@ -19,7 +18,7 @@ def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
     """The parameters of one effect on this ship, centred on what the model holds of it: on "not there" where
     it does not."""
     present = next((e for e in model.effects if type(e) is effect), None) or effect.absent(model.ship)
-    turning, of = _turning(present, model.ship.notes)
+    turning, of = _turning(present, model.ship)
     open_ones = (p for p in effect.params() if p.name != turning)
     return [_unknown(p, present, model, turning if p.name == of else "") for p in open_ones]
 
@@ -41,13 +40,14 @@ def _unknown(p: Param, present: Effect, model: Model, turning: str) -> Unknown:
     )
 
 
-def _turning(present: Effect, notes: Mapping[str, Any]) -> tuple[str, str]:
+def _turning(present: Effect, ship: Ship) -> tuple[str, str]:
     """The number that is no unknown of its own as what turns the velocity says, and the one that it is the
     same as ("": of none); as long as the ship's own effect has it so, too."""
     if not isinstance(present, SensorFault) or not present.turning:
         return "", ""
     (of,) = present.by_readings.values()
-    now, by = getattr(present, present.turning), (notes.get(NOTE) or {}).get("velocity_by")
+    with read_from(ship, f"[{NOTE}]"):
+        now, by = getattr(present, present.turning), (ship.notes.get(NOTE) or {}).get("velocity_by")
     if by == "receiver" and now == 0.0:
         return present.turning, ""
     return (present.turning, of) if by == "compass" and now == getattr(present, of) else ("", "")

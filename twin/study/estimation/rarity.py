@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.special import chdtrc, ndtri
 
+P95 = 1.96  # standard deviations of a normal distribution to either side that hold 95 % of it
 TAIL_PROBABILITY = (
     1e-300  # probability below which the tail of a normal distribution is taken for its exponent alone
 )

@@ -26,31 +26,39 @@ SWING = {"sway": 0.1, "sway" + EARLIER: 0.1, "surge": 0.1, "surge" + EARLIER: 0.
 TERMS = HELM | SWING
 
 
-def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
-    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term; nothing where no waves swing it."""
-    if track.swell is None or name not in HELM:
-        return np.zeros((len(track), 3))
+def columns(track: Track, model: Model) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings of one unit of each term; nothing where
+    no waves swing it."""
+    still, unread = np.zeros((len(track), 3)), np.zeros((len(track), len(READINGS)))
+    if track.swell is None:
+        return dict.fromkeys(TERMS, (still, unread))
     period_s = wave_period_s(track)
+    swift = _swift(track, model, period_s)
+    swing = (track.state - steadied(track).state)[:, [2, 5]] * float(model.ship.L_pp)
+    earlier = {False: swing, True: _earlier(swing, track, period_s)}
+    helm = {False: swift, True: _earlier(swift, track, period_s)}
+    return {name: (helm[name.endswith(EARLIER)], unread) for name in HELM} | {
+        name: (still, _swung(track, name.removesuffix(EARLIER), earlier[name.endswith(EARLIER)]))
+        for name in SWING
+    }
+
+
+def _swift(track: Track, model: Model, period_s: float) -> np.ndarray:
+    """(N, 3) accelerations by what the helm does within a wave's period."""
     width = max(1, round(period_s / track.h))
     orders = None if track.orders is None else {k: running_mean(x, width) for k, x in track.orders.items()}
     mean = replace(track, delta=running_mean(track.delta, width), orders=orders)
-    swift = pushed(track, model) - pushed(mean, model)
-    return _earlier(swift, track, period_s) if name.endswith(EARLIER) else swift
+    return pushed(track, model) - pushed(mean, model)
 
 
-def readings(track: Track, model: Model, name: str) -> np.ndarray:
-    """(N, 8) of one unit of a term: where it is and how fast, aside or ahead, in time with its yaw."""
-    out = np.zeros((len(track), len(READINGS)))
-    if track.swell is None or name not in SWING:
-        return out
-    swing = (track.state - steadied(track).state)[:, [2, 5]] * float(model.ship.L_pp)
-    by, rate = (_earlier(swing, track, wave_period_s(track)) if name.endswith(EARLIER) else swing).T
+def _swung(track: Track, axis: str, swing: np.ndarray) -> np.ndarray:
+    """(N, 8) readings of a ship that swings aside or ahead by so much (N, 2): how far, and how fast."""
+    (by, rate), out = swing.T, np.zeros((len(track), len(READINGS)))
     c, s = np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
-    moved = (
-        {"x": -s * by, "y": c * by, "v": rate}
-        if name.startswith("sway")
-        else {"x": c * by, "y": s * by, "u": rate}
-    )
+    moved = {
+        "sway": {"x": -s * by, "y": c * by, "v": rate},
+        "surge": {"x": c * by, "y": s * by, "u": rate},
+    }[axis]
     for reading, value in moved.items():
         out[:, READINGS.index(reading)] = value
     return out

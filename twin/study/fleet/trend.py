@@ -7,11 +7,11 @@ import numpy as np
 from scipy.special import stdtrit
 
 from twin.recording.timebase import moment_of
+from twin.study.estimation.rarity import P95
 from twin.study.fleet.ask import Row
 
 MONTH_S = 30.4375 * 86400.0
 LEAST_SIZES = 3  # sizes that make a trend
-SD = 1.96  # half a 95 % interval
 UNANSWERED = "not asked yet"
 
 
@@ -89,7 +89,7 @@ def _telling(parameters: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _sd(p: Mapping[str, Any]) -> float:
     """Standard error; the end of a box may cut the interval on one side."""
-    return max(p["high95"] - p["value"], p["value"] - p["low95"], 1e-12) / SD
+    return max(p["high95"] - p["value"], p["value"] - p["low95"], 1e-12) / P95
 
 
 def trend(sizes: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:

@@ -4,6 +4,7 @@ map."""
 import datetime
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import degrees
 from typing import Any, cast
 
 from twin.errors import SettingsError
@@ -11,14 +12,15 @@ from twin.num import as_given, num
 from twin.physics.effect import Effect, SensorFault
 from twin.physics.effects import catalogue
 from twin.physics.ship import Ship
+from twin.study.estimation.rarity import P95
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
 from twin.study.instruments.instrument_lines import amount, as_filed
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 from twin.study.reference.derivatives import noted
 
 OFFSETS = {
-    "A": ("heading_true_north_deg", 57.29577951308232),
-    "gyro_bias": ("yaw_rate_degps", 57.29577951308232),
+    "A": ("heading_true_north_deg", degrees(1.0)),
+    "gyro_bias": ("yaw_rate_degps", degrees(1.0)),
     "log_bias": ("surge_velocity_through_water_mps", 1.0),
 }
 
@@ -95,7 +97,7 @@ def as_map(found: Instruments) -> str:
     for e in said:
         channel, k = OFFSETS[e.unknown.name]
         entry = f'{channel} = {{ column = "{channel}", offset = {as_given(-e.value * k, 6)} }}'
-        lines.append(f"{entry}  # +- {num(1.96 * e.sd * k, 2)}")
+        lines.append(f"{entry}  # +- {num(P95 * e.sd * k, 2)}")
     for e in _seen(found):
         if e not in said:
             lines.append(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.study.estimation.rarity import P95
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.kinematic_fit import KinematicFit, columns
 from twin.study.instruments.problem import Problem
@@ -15,7 +16,6 @@ from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, InstrumentU
 FAULT_BAYES_FACTOR = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
 UNINFORMATIVE = 0.5  # of a prior width: a number that the readings leave wider is not known
 ALIKE = 0.8  # correlation from which two numbers are said to be hard to tell apart
-P95 = 1.96
 CLOCKS = {
     "gnss_delay": ("place", "velocity"),
     "heading_delay": ("heading",),
@@ -207,7 +207,12 @@ def _relative(
             row[book.names.index(reference)] -= 1.0
         row = row[aged.at]  # the clock's own age is none
         out[name] = float(row @ aged.mean), float(np.sqrt(max(row @ aged.covariance @ row, 0.0)))
-    return {"gnss_delay": "position"}.get(reference, reference.removesuffix("_delay")), out
+    return instrument_of(reference), out
+
+
+def instrument_of(age: str) -> str:
+    """The instrument whose age this number is."""
+    return {"gnss_delay": "position"}.get(age, age.removesuffix("_delay"))
 
 
 def _stream(p: Problem, theta: np.ndarray) -> dict[str, np.ndarray]:

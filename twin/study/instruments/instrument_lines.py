@@ -9,10 +9,10 @@ import numpy as np
 
 from twin.num import READABLE, num
 from twin.physics.effect import Effect, SensorFault
-from twin.study.estimation.rarity import deviations
-from twin.study.instruments.findings import P95, InstrumentEstimate, Instruments
+from twin.study.estimation.rarity import P95, deviations
+from twin.study.instruments.findings import InstrumentEstimate, Instruments, instrument_of
 from twin.study.instruments.instrument_samples import Readings
-from twin.study.instruments.unknowns import ALWAYS, FAULTS, effect_of
+from twin.study.instruments.unknowns import ALWAYS, FAULTS, INDEX, UNKNOWNS, effect_of
 
 SHOWN = READABLE | {"-": ("%", 100.0)}
 PLAIN = ("leeway",)  # no percentage
@@ -58,7 +58,7 @@ def as_json(found: Instruments) -> dict[str, Any]:
         ],
         "numbers": [_number(e) for e in found.estimates],
         "ages": {
-            "prompt": found.clock.removesuffix("_delay"),
+            "prompt": instrument_of(found.clock),
             "reference": found.relative[0],
             "later_s": {k: {"value": v, "sd": sd} for k, (v, sd) in found.relative[1].items()},
         },
@@ -105,9 +105,7 @@ def terminal_lines(found: Instruments, effects: Sequence[Effect] = ()) -> list[s
     out += ["", "not seen (95 %: less than)"] + [
         f"  {e.unknown.meaning}: {_limit(e)}" for e in unseen if e.known
     ]
-    out += _unknown(
-        found, [e for e in found.estimates if not e.known and e.unknown.fault not in found.faults]
-    )
+    out += _unknown([e for e in found.estimates if not e.known and e.unknown.fault not in found.faults])
     untold = [
         f.words for name, f in FAULTS.items() if name not in (*ALWAYS, found.clock, *found.log_bayes_factors)
     ]
@@ -118,7 +116,7 @@ def terminal_lines(found: Instruments, effects: Sequence[Effect] = ()) -> list[s
         f"later than {reference} (velocity: than position); none is early, so the earliest is taken "
         "for prompt",
     ]
-    out += [f"  {k}: {v:.2f} s (+- {1.96 * sd:.2f})" for k, (v, sd) in later.items()]
+    out += [f"  {k}: {v:.2f} s (+- {P95 * sd:.2f})" for k, (v, sd) in later.items()]
     return out + [turned_by(r, own) for r, own in zip(found.readings, found.own, strict=True)]
 
 
@@ -200,13 +198,13 @@ def _limit(e: InstrumentEstimate) -> str:
     return f"{num(e.limit * k)} {name}"
 
 
-def _unknown(found: Instruments, numbers: list[InstrumentEstimate]) -> list[str]:
+def _unknown(numbers: list[InstrumentEstimate]) -> list[str]:
     """What these voyages cannot say beside all else, what it is hard to tell from, and what would show it."""
     if not numbers:
         return []
     out = ["", "not known beside all others from these voyages"]
     for e in numbers:
-        beside = f", hard to tell from {e.unlike}" if e.unlike else ""
+        beside = f", hard to tell from {UNKNOWNS[INDEX[e.unlike]].meaning}" if e.unlike else ""
         out += textwrap.wrap(
             f"  {e.unknown.meaning}{beside}; sail {FAULTS[e.unknown.fault].turn}",
             110,

@@ -42,7 +42,6 @@ class KinematicFit:
     blocks: tuple[tuple[arrow.Block, ...], ...]
     reduced: tuple[arrow.ArrowReduced, ...]
     log_likelihood: float
-    rounds: int
 
     @cached_property
     def at(self) -> np.ndarray:
@@ -89,7 +88,7 @@ def fit(
     for v in range(V):
         at[v, ~free[columns(v)]] = 0.0
     width = _widths(problems)
-    rng, done = np.random.default_rng(1), 0
+    rng = np.random.default_rng(1)
     for done in range(1, rounds + 1):
         A, g, found, every = _normal(problems, at)
         covariance, step = _step(A, g, width, free, _row(at))
@@ -104,7 +103,7 @@ def fit(
     if varying:
         found = [from_day_to_day(red, p.widths) for red, p in zip(found, problems, strict=True)]
         A, g = _together(problems, found)
-    return KinematicFit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score, done)
+    return KinematicFit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score)
 
 
 def from_day_to_day(red: arrow.ArrowReduced, widths: np.ndarray) -> arrow.ArrowReduced:
@@ -225,7 +224,7 @@ def _scatters(
             if name == "tie":
                 continue
             n = float(b.weight.sum())
-            r = b.r - b.J @ red.mean - (b.G - b.J @ red.cross) @ covariance[np.ix_(at, at)] @ _pull(red)
+            r = b.r - b.J @ red.mean - (b.G - b.J @ red.cross) @ covariance[np.ix_(at, at)] @ red.g
             more, usual = (BELIEVED, p.usual[name]) if name in p.usual else (0.0, 0.0)
             free = max(n - bent[name], 0.02 * n, 1.0)
             size = ((b.weight * r**2).sum() + more * usual**2) / (free + more)
@@ -247,10 +246,6 @@ def _lasting(r: np.ndarray, parts: int) -> float:
             total += 2.0 * share
         found.append(total)
     return float(np.mean(found))
-
-
-def _pull(red: arrow.ArrowReduced) -> np.ndarray:
-    return red.g
 
 
 def _score(

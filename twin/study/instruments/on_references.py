@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.ship import Ship
+from twin.physics.ship_notes import read_from
 from twin.study.estimation.of_effect import NOTE
 from twin.study.estimation.rarity import deviations
 from twin.study.instruments.by_voyage import equations, tellable
@@ -92,23 +94,25 @@ class KinematicRecord:
         return replace(self, clock=clock, numbers=kept | {self.clock: self.numbers[clock].opposite})
 
     @staticmethod
-    def of_notes(notes: Mapping[str, Any]) -> "KinematicRecord | None":
-        """From a ship file; None where it was calibrated without."""
-        told = notes.get(NOTE)
+    def of_ship(ship: Ship) -> "KinematicRecord | None":
+        """From its file; None where it was calibrated without. SettingsError: the file does not hold it as it
+        was written."""
+        told = ship.notes.get(NOTE)
         if not told:
             return None
-        numbers = {
-            name: KinematicUsual(**{**n, "voyages": tuple(KinematicOfVoyage(**v) for v in n["voyages"])})
-            for name, n in told["numbers"].items()
-            if name in INDEX
-        }
-        return KinematicRecord(
-            str(told["clock"]),
-            tellable(told["faults"]),
-            bool(told["own"]),
-            numbers,
-            str(told.get("velocity_by", "")),
-        )
+        with read_from(ship, f"[{NOTE}]"):
+            numbers = {
+                name: KinematicUsual(**{**n, "voyages": tuple(KinematicOfVoyage(**v) for v in n["voyages"])})
+                for name, n in told["numbers"].items()
+                if name in INDEX
+            }
+            return KinematicRecord(
+                str(told["clock"]),
+                tellable(told["faults"]),
+                bool(told["own"]),
+                numbers,
+                str(told.get("velocity_by", "")),
+            )
 
 
 @dataclass(frozen=True)

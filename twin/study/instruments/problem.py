@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 
 from twin.study.instruments.instrument_samples import PER_MOTION, Readings, ReadingSamples
 from twin.study.instruments.spline import Spline, Weights
-from twin.study.instruments.unknowns import UNKNOWNS, widths
+from twin.study.instruments.unknowns import widths
 
 MARGIN_S = 5.0  # the path goes on so long before and behind the readings, for what is late
 STREAM_S = 60.0  # between two numbers of the stream, at least
@@ -232,11 +232,6 @@ class Problem:
         """Whether velocity in the receiver's own axes, or a log of two, ties compass and gyro to the place.
         Else only how the ship drifts in a turn would, and an age told by that is no instrument's business."""
         return self.own or "log aside" in self.by
-
-    @property
-    def places(self) -> int:
-        """The number of shared numbers."""
-        return len(UNKNOWNS)
 
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
         """(K, 3) of the path, north and east [m] and heading [rad]; (M, 2) of how the stream, toward north

@@ -8,7 +8,7 @@ Frames: north-east; the ship's axes ahead and to starboard. s = t - latency; R t
     velocity  d/dt of that, smoothed: int exp(-q) V(s - T q) dq;
               of a receiver with its own attitude in the ship's axes at s
     heading   psi(s) + A + B sin psi + C cos psi + D sin 2 psi + E cos 2 psi
-    rate      d psi/dt (s) + bias
+    rate      (1 + k_r) d psi/dt (s) + bias
     log       (1 + k)(u_r cos m + v_r sin m) + b,
     log aside (1 + k)(v_r cos m - u_r sin m);   (u_r, v_r) = R^T (V - stream)
     wind      turned by the vane: R^T ((1 + k_w) V - W), W = (1 + k_w) air, the wind as this anemometer would

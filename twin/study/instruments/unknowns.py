@@ -28,38 +28,37 @@ class InstrumentUnknown:
 @dataclass(frozen=True)
 class InstrumentFault:
     """A group of numbers that is one mistake (`effect_of`: its name in the catalogue). `turn`: the manoeuvre
-    that shows it best; `by`: the instrument whose disagreement shows it."""
+    that shows it best."""
 
     words: str
-    by: str
     turn: str
     odds: float = 0.1
 
 
-LATE = 0.5  # odds that an instrument is late by something: most are by a little
+ODDS_LATE = 0.5  # odds that an instrument is late by something: most are by a little
 CIRCLES = "a full circle to each side"
 FAULTS: Mapping[str, InstrumentFault] = {
-    "gnss_delay": InstrumentFault("position and velocity late", "position", "turns to both sides", LATE),
-    "smoothing": InstrumentFault("course and speed over ground smoothed", "velocity", "turns to both sides"),
+    "gnss_delay": InstrumentFault("position and velocity late", "turns to both sides", ODDS_LATE),
+    "smoothing": InstrumentFault("course and speed over ground smoothed", "turns to both sides"),
     "heading_delay": InstrumentFault(
-        "heading late", "heading", "turns to both sides, with rate of turn recorded", LATE
+        "heading late", "turns to both sides, with rate of turn recorded", ODDS_LATE
     ),
-    "rate_delay": InstrumentFault("rate of turn late", "rate", "turns to both sides", LATE),
-    "log_delay": InstrumentFault("speed log late", "log", "changes of speed", LATE),
-    "heading_bias": InstrumentFault("compass bias (variation and alignment)", "heading", CIRCLES),
-    "deviation": InstrumentFault("compass deviation curve", "heading", CIRCLES),
-    "gyro_bias": InstrumentFault("rate gyro bias", "rate", "any voyage with heading and rate of turn"),
-    "gyro_scale": InstrumentFault("rate gyro scale", "rate", "turns, with heading and rate of turn recorded"),
-    "log_scale": InstrumentFault("speed log scale", "log", "reciprocal courses or a circle"),
-    "log_bias": InstrumentFault("speed log bias", "log", "reciprocal courses at two speeds"),
-    "log_angle": InstrumentFault("speed log askew", "log aside", CIRCLES),
-    "antenna": InstrumentFault("antenna's place", "velocity", CIRCLES + ", with a log of two axes"),
-    "mast": InstrumentFault("antenna's height", "position", "rolling in a sea"),
-    "vane": InstrumentFault("wind vane offset", "wind", CIRCLES),
-    "anemometer": InstrumentFault("wind speed scale", "wind", "reciprocal courses in a steady wind"),
-    "leeway": InstrumentFault("leeway by the wind", "drift", CIRCLES + " in wind"),
-    "current": InstrumentFault("stream", "drift", CIRCLES),
-    "drift": InstrumentFault("drift of a turning ship", "drift", "turns"),
+    "rate_delay": InstrumentFault("rate of turn late", "turns to both sides", ODDS_LATE),
+    "log_delay": InstrumentFault("speed log late", "changes of speed", ODDS_LATE),
+    "heading_bias": InstrumentFault("compass bias (variation and alignment)", CIRCLES),
+    "deviation": InstrumentFault("compass deviation curve", CIRCLES),
+    "gyro_bias": InstrumentFault("rate gyro bias", "any voyage with heading and rate of turn"),
+    "gyro_scale": InstrumentFault("rate gyro scale", "turns, with heading and rate of turn recorded"),
+    "log_scale": InstrumentFault("speed log scale", "reciprocal courses or a circle"),
+    "log_bias": InstrumentFault("speed log bias", "reciprocal courses at two speeds"),
+    "log_angle": InstrumentFault("speed log askew", CIRCLES),
+    "antenna": InstrumentFault("antenna's place", CIRCLES + ", with a log of two axes"),
+    "mast": InstrumentFault("antenna's height", "rolling in a sea"),
+    "vane": InstrumentFault("wind vane offset", CIRCLES),
+    "anemometer": InstrumentFault("wind speed scale", "reciprocal courses in a steady wind"),
+    "leeway": InstrumentFault("leeway by the wind", CIRCLES + " in wind"),
+    "current": InstrumentFault("stream", CIRCLES),
+    "drift": InstrumentFault("drift of a turning ship", "turns"),
 }
 ALWAYS = ("current", "drift")  # never left out: every voyage has a stream, and every ship drifts in a turn
 

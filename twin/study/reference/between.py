@@ -56,10 +56,7 @@ class BetweenVoyages:
 def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[BetweenVoyages]:
     """Each voyage by itself; a single one in two halves. `sd` (P,): the priors' widths, in the unknowns'
     own units."""
-    of = np.array([track for track, _, _ in normal.where])
-    if np.unique(of).size == 1:
-        of = (np.arange(of.size) * 2) // of.size
-    out = []
+    of, out = normal.voyages(), []
     for voyage in np.unique(of):
         A, b, ee = normal.only(of == voyage).total()
         out.append(BetweenVoyages(A * np.outer(sd, sd) / temper, b * sd / temper, ee / temper))

@@ -10,11 +10,11 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.physics.ship_notes import read_from
 from twin.study.estimation.box import within
 from twin.study.estimation.columns import Unknown, core_unknowns, with_values
 from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Fit
-from twin.study.reference.structural_table import read_from
 
 KEPT = "prior kept: the reference voyages do not excite it"
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
@@ -112,7 +112,7 @@ def with_one_step_core(ship: Ship) -> Ship:
     the noise model and the numbers' covariance were found. Inside the boxes, also where its owner has moved a
     number of the file since. SettingsError: the file does not hold it as it was written."""
     off, model = ship.notes.get("structural", {}).get("one_step_core", {}), Model.of(ship)
-    with read_from(ship, "one_step_core"):
+    with read_from(ship, "[structural] one_step_core"):
         own = [(u, u.centre + float(off[u.name])) for u in core_unknowns(model) if u.name in off]
         if not all(isfinite(value) for _, value in own):
             raise ValueError("not finite")

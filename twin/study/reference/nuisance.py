@@ -8,6 +8,7 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
+from twin.physics.ship_notes import read_from
 from twin.study.estimation.columns import (
     FORM,
     ROUGH,
@@ -23,7 +24,6 @@ from twin.study.estimation.linear import Linear
 from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.between import SHARES, BetweenVoyages, doubted, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
-from twin.study.reference.structural_table import read_from
 
 HEALTHY_WIDTHS = (
     0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
@@ -175,7 +175,7 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     """What the ship file's calibration left open; where it says nothing, the priors. SettingsError: its file
     does not hold it as it was written."""
-    with read_from(model.ship, "offset and covariance"):
+    with read_from(model.ship, "[structural] offset and covariance"):
         return _from_ship(model, unknowns)
 
 
@@ -199,9 +199,9 @@ def _from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
         mean[mine] = np.array(stored["offset"], float)[theirs] / sd
         if not np.all(np.isfinite(covariance)) or not np.all(np.isfinite(mean)):
             raise ValueError("not finite")
-        if np.any(np.diag(covariance) < 0.0):
-            raise ValueError("a variance below zero")
-        information[np.ix_(mine, mine)] = np.linalg.inv(covariance + 1e-9 * np.eye(len(mine)))
+        covariance += 1e-9 * np.eye(len(mine))
+        np.linalg.cholesky(covariance)  # ValueError where it is none
+        information[np.ix_(mine, mine)] = np.linalg.inv(covariance)
     return Nuisance(unknowns, information, information @ mean, stored.get("daily", {}))
 
 

@@ -31,8 +31,8 @@ import numpy as np
 from scipy.special import gammaln, stdtrit
 
 from twin.physics.ship import Ship
+from twin.physics.ship_notes import read_from
 from twin.recording.jsonable import short
-from twin.study.reference.structural_table import read_from
 from twin.study.track.track import READINGS
 
 CHANNELS = ("along", "across", *READINGS[2:])
@@ -159,7 +159,7 @@ def of_ship(ship: Ship) -> PathError | None:
     table = ship.notes.get("structural", {}).get("path_error")
     if not table:
         return None
-    with read_from(ship, "path_error"):
+    with read_from(ship, "[structural] path_error"):
         read, told = (
             [CHANNELS.index(name) for name in table["channels"]],
             np.array(table["covariance"], float),

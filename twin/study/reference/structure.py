@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from twin.physics.ship import Ship
+from twin.physics.ship_notes import positive, read_from
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.filters import GROUND
 from twin.study.estimation.fit import evidence
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
 from twin.study.estimation.linear import Linear
 from twin.study.reference.path_error import of_ship
-from twin.study.reference.structural_table import read_from
 
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
@@ -49,13 +49,15 @@ def noise_model_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
     table = ship.notes.get("structural", {}).get(name)
     if not table:
         return None
-    with read_from(ship, name):
+    with read_from(ship, f"[structural] {name}"):
         rest: dict[str, Any] = {
             key: _by_axis(v) if key == "white" else float(v) for key, v in table.items() if key != "share"
         }
         found = NoiseModel(_by_axis(table["share"]), **rest)
         if not np.all(np.isfinite(np.hstack(list(asdict(found).values())))):
             raise ValueError("not finite")
+        for level in (*found.share, *found.white, found.sensor):
+            positive(level)
     return found
 
 
@@ -200,9 +202,7 @@ def predictive(normal: Normal, sd: np.ndarray) -> float:
 
     A noise model that only has to explain what the core was fitted to comes out too low, and the next
     manoeuvre then looks strange. `sd` (P,): the priors' widths."""
-    of = np.array([track for track, _, _ in normal.where])
-    if np.unique(of).size == 1:
-        of = (np.arange(of.size) * 2) // of.size
+    of = normal.voyages()
     whole, groups = evidence(normal, sd), np.unique(of)
     if groups.size < 2:
         return whole

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from twin.study.diagnosis.case import SCENARIOS, Case, visible
 from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.open_loop_check import open_loop_check
-from twin.study.diagnosis.refine import Found, Sets, refine
+from twin.study.diagnosis.refine import Found, Sets, first_guess, largest, refine
 from twin.study.diagnosis.search import CLOSE
 from twin.study.diagnosis.steady import simpler, steady
-from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_with
+from twin.study.reference.evidence import Hypothesis, Reduced, posterior, weigh_with
 
 TRIED = 2  # kinds of weather beside each set, the likeliest to first order
 
@@ -46,10 +46,10 @@ class WeatherSearch:
         """Judge a set, begun where the likeliest part of it was found to stand, or at its first-order guess
         in the likeliest noise scenario."""
         parts = [self.found[s] for s in self.stand if set(s) < set(chosen)]
-        part = max(parts, key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight), default=None)
+        part = largest(parts)
         scenario = part.hypothesis.scenario if part else self._likeliest_scenario(chosen)
         about = part.reduced if part and part.reduced else self.scenarios[scenario]
-        z = boxed(about, chosen, posterior(about, chosen)).z
+        z = first_guess(about, chosen)
         self.found[chosen] = found = refine(self.case, chosen, scenario, z, (), part=part)[0]
         swapped = [s for s in simpler(self.case, chosen) if set(self.names) <= set(s)]
         if swapped and steady(self.case, found):

@@ -1,7 +1,7 @@
 """Does a change of the model make measurements likelier that it was not fitted to?
 
 Both models predict every window of the held-out part open loop, from the same measured state, with the stream
-that the voyage had shown by then (reference/own_water.py). What they promise is judged by the density of a
+that the voyage had shown by then (prediction/own_water.py). What they promise is judged by the density of a
 healthy ship's errors (reference/path_error.py), in all readings together, at every horizon:
 
     log LR = mean over horizons of  sum over voyages of  n_eff  mean over windows of  log p(e_after) - log
@@ -27,6 +27,7 @@ from scipy.special import stdtrit
 
 from twin.errors import DataError
 from twin.num import as_given
+from twin.study.estimation.rarity import P95
 from twin.study.prediction.envelope import widening
 from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, Windows
@@ -159,8 +160,10 @@ def independent(windows: Windows, horizon_s: float) -> float:
 
 
 def _stride(windows: Windows) -> float:
+    """From the begin of one window to the next [s]; of a single one, its length."""
     begins = windows.track.t[windows.start]
-    return float(np.median(np.diff(begins))) if begins.size > 1 else float(begins.size)
+    alone_s = float(windows.lead.max()) * windows.track.h
+    return float(np.median(np.diff(begins))) if begins.size > 1 else alone_s * begins.size
 
 
 def _length(windows: Windows) -> float:
@@ -186,7 +189,7 @@ def block_interval(
         block = max(1, round(block_s / max(_stride(windows), 1e-9)))
         sums += _resampled(there, block, rng)
         blocks += there.size / block
-    wider = float(stdtrit(max(blocks - 1.0, 1.0), 0.975)) / 1.96
+    wider = float(stdtrit(max(blocks - 1.0, 1.0), 0.975)) / P95
     low, high = np.quantile(sums, [0.025, 0.975])
     return total + wider * (float(low) - total), total + wider * (float(high) - total)
 

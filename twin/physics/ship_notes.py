@@ -1,4 +1,4 @@
-"""What a calibration left in the ship file under [structural], and one line where it is damaged."""
+"""What a calibration left in the ship file, and one line where it is damaged."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -6,17 +6,18 @@ from contextlib import contextmanager
 import numpy as np
 
 from twin.errors import SettingsError
-from twin.physics.ship import Ship
+
+from .ship import Ship
 
 
 @contextmanager
 def read_from(ship: Ship, part: str) -> Iterator[None]:
-    """While a part of the table is read. SettingsError: the file does not hold it as it was written."""
+    """While a part of it is read. SettingsError: the file does not hold it as it was written."""
     try:
         yield
     except (TypeError, ValueError, KeyError, IndexError, AttributeError) as error:
         raise SettingsError(
-            f"{ship.name}: [structural] {part} in the ship file is damaged ({error}). Calibrate it again."
+            f"{ship.name}: {part} in the ship file is damaged ({error}). Calibrate it again."
         ) from None
 
 
