@@ -4,8 +4,8 @@ A hypothesis is a set of effects (up to three causes, beside any weather) and a 
 the model's error, how restless the water). Its evidence integrates out everything else: the core's
 derivatives and the instruments' usual errors as the reference voyages left them, and a small amount of every
 effect (a spike far narrower than its plausible size, or as wide as what any day brings of it), so that only
-what is clearly more than nothing counts. The parameters of its own effects are integrated over their priors (half-normal in
-a box with one side), so that a flexible effect pays for its freedom.
+what is clearly more than nothing counts. The parameters of its own effects are integrated over their priors
+(half-normal in a box with one side), so that a flexible effect pays for its freedom.
 
 Source: MacKay (2003) Information theory, inference, and learning algorithms, ch. 28; George & McCulloch
     (1993), spike and slab.
