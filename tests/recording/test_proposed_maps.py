@@ -11,6 +11,7 @@ from twin.recording.formats.actuator_guess import guess_actuator
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_clock import clock_unit, text_format
+from twin.recording.suggest_entries import Entry
 from twin.recording.suggest_map import proved, suggestion
 
 KNOT = 1852.0 / 3600.0
@@ -278,6 +279,17 @@ def test_what_a_check_proves_of_a_frame_is_in_the_proposal(tmp_path):
     v, text = read(path)
     agrees(v, ("surge_velocity_mps", "heading_true_north_deg"))
     assert text.count('frame = "earth"') == 2 and "prove. CONFIRM" in text
+
+
+def test_a_sign_that_a_check_proves_is_written_in():
+    said = (
+        "# rudder_sign: the rudder turns it to the other side: if the rudder is positive to port all of it "
+        "agrees; that is believed. In the map: sign = -1 for rudder_angle_deg.\n[columns]\n"
+    )
+    columns = {"rudder_angle_deg": Entry({"column": "Rudder (+ port)"}, ["unit by its name"])}
+    assert proved(columns, {}, said)
+    assert columns["rudder_angle_deg"].keys["sign"] == -1
+    assert columns["rudder_angle_deg"].why[-1].endswith("CONFIRM")
 
 
 def test_a_unit_of_time_that_a_check_proves_is_written_in():

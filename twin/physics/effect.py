@@ -27,6 +27,7 @@ ROLES = {  # what every ship may have one of, and by what the study asks for it
     "gear": "what stands between the rudder's order and the rudder",
     "antenna": "where position and speed over ground are measured",
     "wind": "how the wind that was recorded pushes the ship",
+    "shallow_water": "how the ship answers to the little water under its keel that was recorded",
     "compass": "how far the compass is off, by the heading",
 }
 

@@ -23,7 +23,7 @@ from twin.recording.suggest_entries import Entry, best_guesses, proposed
 from twin.recording.suggest_log import of_signals
 
 CLOCK_PROVED = re.compile(r'In the map: \[time\] unit = "(\w+)"\.')
-PROVED = re.compile(r'that is believed\. In the map: (frame|unit) = "([^"]+)" for (both|[a-z_]+)\.')
+PROVED = re.compile(r'that is believed\. In the map: (frame|unit|sign) = "?([^" ]+)"? for (both|[a-z_]+)\.')
 ONE_SCREW = (
     "With a ship file of one rudder and one propeller (twin init --propellers 2), in the place of the lines "
     "of each actuator their means:"
@@ -59,7 +59,7 @@ def of_tables(files: Sequence[SeenColumns], paths: Sequence[Path]) -> str:
 
 
 def proved(columns: dict[str, Entry], time: dict[str, Any], text: str) -> bool:
-    """Writes a frame or a unit that a check proves into the entries; whether there was one."""
+    """Writes a frame, a unit or a sign that a check proves into the entries; whether there was one."""
     said = "\n".join(line for line in text.splitlines() if line.startswith("# "))
     found, clock = PROVED.findall(said), CLOCK_PROVED.findall(said)
     if clock:
@@ -67,7 +67,7 @@ def proved(columns: dict[str, Entry], time: dict[str, Any], text: str) -> bool:
     for key, value_of_it, whose in found:
         for channel in FRAMED if whose == "both" else (whose,):
             if channel in columns:
-                columns[channel].keys[key] = value_of_it
+                columns[channel].keys[key] = int(value_of_it) if key == "sign" else value_of_it
                 columns[channel].why.append(f"{key} as position, heading and turning prove. CONFIRM")
     return bool(found or clock)
 

@@ -23,6 +23,8 @@ class ShallowWater(Flow):
     belongs_to = "voyage"
     needs = ("depth",)
     of_place = True
+    role = "shallow_water"
+    with_core = "there was little water under the keel on the reference voyages"
     source = (
         "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168 (shallow-water correction); "
         "Lackenby (1963) for "

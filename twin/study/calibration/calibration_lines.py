@@ -5,6 +5,7 @@ from typing import Any
 from twin.num import as_given, num, readable
 from twin.recording.checks import losses, whose
 from twin.study.calibration.calibration_record import PARTS
+from twin.study.calibration.parts import WEATHER
 from twin.study.estimation.columns import FORM, LATE, SEA
 from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
@@ -83,6 +84,10 @@ def _parts(result: dict[str, Any]) -> list[str]:
         ),
         ("wind", "wind pushed the ship on these voyages: its force is now part of the model"),
         (
+            "shallow_water",
+            "there was little water under the keel on these voyages: what that does is now part of the model",
+        ),
+        (
             "compass",
             "speed over ground is turned by a compass that deviates with the heading: that is now part of "
             "the model",
@@ -90,10 +95,15 @@ def _parts(result: dict[str, Any]) -> list[str]:
     ):
         lines += _part(result, part, why)
     return lines + [
-        f"  {name} was measured, but too weak to be estimated: what pushes up to {as_given(HARDER)} times as "
+        f"  {name} was measured, {_not_in_the_model(name)}: what pushes up to {as_given(HARDER)} times as "
         "hard is allowed for and not called missing"
         for name in result["too_faint"]
     ]
+
+
+def _not_in_the_model(name: str) -> str:
+    looked_for = name in (weather.__name__ for weather in WEATHER)
+    return "but too weak to be estimated" if looked_for else "and is not looked for in a calibration"
 
 
 def _part(result: dict[str, Any], part: str, why: str) -> list[str]:

@@ -10,6 +10,7 @@ from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
+from twin.study.calibration.parts import WEATHER
 from twin.study.calibration.usual import significantly_there
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.start import waves_on
@@ -22,13 +23,13 @@ from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1
 # of the ship and not of the core, found with it; their numbers stand under these keys in --json
-PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind", "compass")}
+PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind", "shallow_water", "compass")}
 
 
 def searched_parts(ship: Ship) -> tuple[type[Effect], ...]:
     """Of the ship and not of the core, and found by the probability of the voyages (the antenna: by
-    predictions): its steering gear or its actuators' lags, and wind."""
-    return (*(gear for gears in gears_of(ship) for gear in gears), PARTS["wind"])
+    predictions): its steering gear or its actuators' lags, wind and shallow water."""
+    return (*(gear for gears in gears_of(ship) for gear in gears), *WEATHER)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from twin.study.calibration.calibration_record import (
 from twin.study.calibration.held_out import HeldOut, errors
 from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.own_instruments import own_instruments
-from twin.study.calibration.parts import given, placed, significant, with_or_without_wind
+from twin.study.calibration.parts import given, placed, significant, with_its_weather
 from twin.study.calibration.usual import usual
 from twin.study.calibration.ways import FittedShip, best_way
 from twin.study.estimation.columns import Unknown, core_unknowns
@@ -213,7 +213,7 @@ def _rough(
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *own, *curve))
     if begun:
         tracks = _in_its_sea(sailed, begun.model, progress)
-        progress("fitting the core with the gear that was found")
+        progress("fitting the core from where it was found")
         parts = fitted_parts(tracks, model)
         rough = beside_its_gear(parts, model.but(*begun.model.lags), unknowns, known, TEMPER)
     else:
@@ -232,8 +232,8 @@ def _rough(
         if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
             tracks, parts = again, fitted_parts(again, model)
             rough = with_or_without_gear(parts, model, unknowns, known, TEMPER)
-    progress("testing whether wind pushed the ship")
-    rough = with_or_without_wind(parts, rough, known, TEMPER)
+    progress("testing whether wind or little water under the keel acted on the ship")
+    rough = with_its_weather(parts, rough, known, TEMPER)
     progress("testing whether the compass deviates with the heading")
     return RoughCore(ship, tracks, rough, curve, own_deviation(parts, rough, known, TEMPER))
 

@@ -1,10 +1,11 @@
 """Parts of the ship that are found with its core, if the reference voyages ask for them: where its antenna
-stands, and how wind pushes it.
+stands, how wind pushes it, and how it answers to little water under its keel.
 
 Nothing is wrong on a reference voyage, so an antenna that clearly stands elsewhere was never where the file
 has it (a receiver that reports its centre of gravity, a lever arm left at zero). Wind that was recorded there
-pushed it, and a small ship seldom has a calm; left out, it would bend the core, and the noise model would
-grow until it hides what is missing. Kept in mind alone, either would leave every prediction off."""
+pushed it, and a small ship seldom has a calm; the water of a river or a harbour is never deep. Left out,
+either would bend the core, and the noise model would grow until it hides what is missing. Kept in mind alone,
+each would leave every prediction off."""
 
 from collections.abc import Mapping, Sequence
 
@@ -23,21 +24,23 @@ from twin.study.track.track import Track
 
 MOVED_SE = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it
-# of the standard acceleration, by a plausible wind: what a fainter one seems to do is its own way through the
-# air, and no wind's
+# of the standard acceleration, by a plausible wind or bottom: what a fainter wind seems to do is the ship's
+# own way through the air, and no wind's
 PUSHED = 0.08
+WEATHER = tuple(map(of_role, ("wind", "shallow_water")))  # that a ship may never be without
 
 
-def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue, temper: float) -> Fit:
-    """The fit with wind beside the core, if it was recorded on every voyage and makes them clearly more
-    probable."""
-    wind = of_role("wind")
-    pushed = strengths(tracks, without.model, known).get(wind.__name__, 0.0) > PUSHED
-    if not pushed or any(t.missing().intersection(wind.needs) for t in tracks):
-        return without
-    unknowns = (*without.unknowns, *effect_unknowns(wind, Model(without.model.ship)))
-    found = fit(tracks, without.model, unknowns, known, NoiseModel(), temper=temper, smooth=True)
-    return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
+def with_its_weather(tracks: Sequence[Track], found: Fit, known: Catalogue, temper: float) -> Fit:
+    """The fit with each kind of WEATHER beside the core that was recorded on every voyage and makes them
+    clearly more probable."""
+    for weather in WEATHER:
+        pushed = strengths(tracks, found.model, known).get(weather.__name__, 0.0) > PUSHED
+        if not pushed or any(t.missing().intersection(weather.needs) for t in tracks):
+            continue
+        unknowns = (*found.unknowns, *effect_unknowns(weather, Model(found.model.ship)))
+        beside = fit(tracks, found.model, unknowns, known, NoiseModel(), temper=temper, smooth=True)
+        found = beside if beside.cost < found.cost - 2.0 * CLEARLY_BETTER else found
+    return found
 
 
 def given(ship: Ship, unknown: Unknown) -> bool:

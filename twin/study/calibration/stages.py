@@ -14,7 +14,7 @@ BEGUN_NEAR = {CORE: 0.4, NOISE_MODEL: 0.3}
 CORE_STAGES = {
     CORE: 4.5,
     SEA: 2.0,
-    "testing whether wind": 0.1,
+    "testing whether wind or little water": 0.1,
     "testing whether the compass": 0.4,
     NOISE_MODEL: 10.5,
     "fitting again with this noise model": 2.8,
