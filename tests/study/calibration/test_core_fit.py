@@ -289,3 +289,25 @@ def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_do
         and "Wind" not in ship.notes["structural"]["weather"]
     )
     assert result["too_faint"] == [] and calibrated[1]["wind"] == {}
+
+
+@thorough
+def test_little_water_on_the_references_becomes_a_part_of_the_ship_and_deep_water_does_not(
+    calibrated, tmp_path
+):
+    """Test: the 2 m boat over one and a half times its draught, in deep water and, held out, over two and a half
+    times; the tanker's in deep water. Expected: how it answers to the bottom is found beside the core."""
+    shares = ((("ShallowWater", 1.0),), (), (("ShallowWater", 0.3),))
+    recordings = simulate(
+        [
+            SeaCase("usv", m, hidden=hidden, seed=990 + i, duration_s=60.0)
+            for i, (m, hidden) in enumerate(zip(("zigzag_20", "mixed", "speed_changes"), shares, strict=True))
+        ]
+    )
+    river = (recorded(str(i), r.columns, every=4) for i, r in enumerate(recordings))
+    ship, result = by_steps(river, load("usv"), tmp_path)
+    (shallow,) = [e for e in ship.effects if type(e).__name__ == "ShallowWater"]
+    sd = ship.notes["effects"]["ShallowWater"]["sway"]["sd"]
+    assert shallow.sway > 4.0 * sd and result["shallow_water"]["sway"]["value"] == shallow.sway
+    assert "ShallowWater" not in ship.notes["structural"]["weather"]
+    assert calibrated[1]["shallow_water"] == {}

@@ -117,6 +117,16 @@ def test_the_sentence_says_what_shows_only_with_the_others():
 
 
 @thorough
+def test_what_comes_and_goes_in_the_first_answer_still_does_beside_a_further_cause(half):
+    """Test: the first answer's cause comes and goes with 0.6, those of the second look do not. Expected: 0.6,
+    for the probability of the first is told by it."""
+    facts = replace(half.considered.facts, comes_and_goes=0.6)
+    first = replace(half, considered=replace(half.considered, facts=facts))
+    both = further._considered(first, half, ("HullFouling",), ("HeadingBias", "HullFouling"))
+    assert half.considered.facts.comes_and_goes < both.facts.comes_and_goes == 0.6
+
+
+@thorough
 def test_the_set_is_fitted_also_where_the_first_answer_stood_beside_other_water(half):
     """Beside a stream that the whole does without, no part of it was found: its guess is of first order."""
     stream = {("HeadingBias", "Current"): half.found[half.shown]}

@@ -89,6 +89,22 @@ def test_growth_that_is_there_for_half_of_a_voyage_is_no_growth(tanker, fouled_b
     assert varies < 0.5 if fouled_before else varies > 0.9
 
 
+@thorough
+def test_of_three_voyages_each_is_asked_in_parts_of_its_own(tanker):
+    """Test: growth for the second half of each of three voyages of 24 min, asked together. Expected: it varies,
+    as it would on one of them."""
+    growth = find("HullFouling").absent(tanker).but(extra=0.6)
+    halves = []
+    for k in range(3):
+        before, after = (voyage(*e, of=tanker, seed=3 + k, seconds=720.0) for e in ((), (growth,)))
+        later = after.time_s - after.time_s[0] + before.time_s[-1] + 120.0
+        columns = {name: np.append(x, after.columns[name]) for name, x in before.columns.items()}
+        halves.append(before.with_rows(np.append(before.time_s, later), columns))
+    case = assemble(halves, tanker)
+    found = refine(case, ("HullFouling",), "usual", np.ones(len(case.effects)), ())[0]
+    assert varying(case, found)["HullFouling"] > 0.9
+
+
 def test_what_varies_within_a_voyage_is_no_cause_of_the_ship_and_the_others_are_named():
     fouled = cause("HullFouling", varies=0.95)
     assert decide(facts(fouled)).reason == "comes_and_goes"

@@ -3,6 +3,7 @@
 import pytest
 
 from twin.study.diagnosis import sentences
+from twin.study.diagnosis.reasons import why_not
 
 
 def cause(effect, probability, **errors):
@@ -50,3 +51,13 @@ def test_what_is_known_by_its_form_has_its_probability_among_those_of_which_one_
     assert sentences.one_of(told).startswith(
         "Undecided: probably Loading (41 %) or something like HullDamping (35 %) is missing"
     )
+
+
+@pytest.mark.parametrize(
+    "share, words", [(None, "single causes"), (0.0, "single causes"), (0.5, "instruments")]
+)
+def test_what_is_as_on_the_references_says_by_what_it_is(share, words):
+    """Test: an instrument's cause that no, none or half of the references had as much of by kinematics.
+    Expected: only the last is said of the instruments; of the others, single causes explained as much."""
+    c = cause("HeadingBias", 0.95, on_references=share, posterior=0.95)
+    assert words in why_not(c, "as_on_references")

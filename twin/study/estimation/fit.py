@@ -75,12 +75,10 @@ def fit(
     takes energy out of every motion (dissipation.py), and no further than they were found to hold: a step
     that kept its promise lets the next one go twice as far, one that did not is not taken but made shorter
     (trust region; Nocedal & Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does
-    not end in a corner of their boxes; the last one is not judged. Only a fit that ends where
-    resistance falls with speed is begun again, at the nearest place where it grows: a wall on the way led it
-    elsewhere.
+    not end in a corner of their boxes; the last one is not judged. Only a fit that ends where resistance
+    falls with speed is begun again, at the nearest place where it grows: a wall on the way led it elsewhere.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
-        filter follows is not found yet,
-    and errs by more than they do."""
+    filter follows is not found yet, and errs by more than they do."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, noise_model, temper, smooth)
     here, z = replace(problem, grows=False).best(problem.start())
     if not problem.resistance_grows(z):

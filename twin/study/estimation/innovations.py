@@ -6,8 +6,7 @@ Along the smooth motion the ship is linear: delta = (x, y, psi, u, v, r), a slow
 first-order Gauss-Markov; and, where a sea was seen to work, what waves do (waves.py). The filter's gains do
 not depend on the unknowns theta, so its innovations are affine in them:
 epsilon = e - G theta. Whitened, they give the normal equations A = G'G, b = G'e of every later question.
-    Tracks are cut into
-segments that are filtered side by side.
+Tracks are cut into segments that are filtered side by side.
 
 Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model
     discrepancy).
@@ -51,9 +50,9 @@ ABREAST = 24  # segments filtered side by side: a step of more takes as much lon
 class NoiseModel:
     """What a correct model of this kind still leaves unexplained on this ship: the structural noise model.
 
-    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller
-        cause at that moment,
-    in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens;
+    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause
+        at that moment, in surge, sway, yaw;
+    `calm`: the same share of a standard acceleration, there even when nothing happens;
     `white` (3,): fast part, of a standard acceleration; `flow`: scatter of the water's own motion, as a share
     of U_0; `sensor`: factor on the readings' scatter;
     `wander`: how far the position that satellites show strays from itself in one second, and sqrt(t) times

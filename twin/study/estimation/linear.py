@@ -178,7 +178,7 @@ def _without_current(model: Model) -> Model:
 
 def busy(track: Track, model: Model) -> np.ndarray:
     """(N, 3) how hard hull, propeller and rudder are at work, as accelerations [m/s2, m/s2, rad/s2], over the
-    last length."""
+    length about each moment (less of it at the ends of the track)."""
     s = track.situation(**steered(track, model))
     forces = model.known(s)
     width = max(3, int(model.ship.scale("time") / track.h))

@@ -7,9 +7,9 @@ of a window by J c. With windows j that ended before,
     c = -(P^-1 + sum_j k_j J_j' S^-1 J_j)^-1  sum_j k_j J_j' S^-1 e_j,
         k_j = (share that does not overlap) exp(-age_j / MEMORY_S)
 
-S the covariance of a healthy ship's error, P what a stream may be before anything was seen of it. (Recursive
-least squares with
-forgetting: Ljung (1999) System identification, sec. 11.2.)
+S the covariance of a healthy ship's error, P what a stream may be before anything was seen of it.
+
+Source: Ljung (1999) System identification, sec. 11.2 (recursive least squares with forgetting).
 """
 
 from dataclasses import replace

@@ -12,15 +12,13 @@ with C the mean of e e' over the reference voyages, each predicted with numbers 
 make of it, w >= 1 a widening where rudder, speed, turning or wind leave what was sailed then, and nu the
 degrees of freedom by which voyages scatter among themselves: log(size of a voyage) has variance
 s^2 = 1/(2 nu). Windows of one voyage are alike, for what the core misses lasts: n of them, correlated by
-    rho, count as
-n / (1 + (n - 1) rho).
+rho, count as n / (1 + (n - 1) rho).
 
 The log density is a proper scoring rule: no model gains by promising more or less than it knows.
 
 Source: Lange, Little & Taylor (1989) Robust statistical modeling using the t distribution, J. Amer. Statist.
-    Assoc. 84, 881-896; effective
-number: Kish (1965) Survey sampling, sec. 5.4; scoring: Gneiting & Raftery (2007), J. Amer. Statist. Assoc.
-    102, 359-378.
+    Assoc. 84, 881-896; effective number: Kish (1965) Survey sampling, sec. 5.4; scoring: Gneiting & Raftery
+    (2007), J. Amer. Statist. Assoc. 102, 359-378.
 """
 
 from collections.abc import Mapping, Sequence

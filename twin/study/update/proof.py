@@ -4,8 +4,8 @@ Both models predict every window of the held-out part open loop, from the same m
 that the voyage had shown by then (prediction/own_water.py). What they promise is judged by the density of a
 healthy ship's errors (reference/path_error.py), in all readings together, at every horizon:
 
-    log LR = mean over horizons of  sum over voyages of  n_eff  mean over windows of  log p(e_after) - log
-    p(e_before)
+    log LR = mean over horizons of  sum over voyages of  n_eff  mean over windows of
+             log p(e_after) - log p(e_before)
 
 n_eff is the number of independent windows that a voyage's windows count as. Under the model without the
 change exp(log LR) is expected to be at most one (the geometric mean of likelihood ratios, each of which is
@@ -14,8 +14,8 @@ change is proved when log LR >= log 20 and its 95 % interval, by resampling bloc
 and degrees beside it illustrate; no horizon decides alone.
 
 Source: Vovk & Wang (2021) E-values: calibration, combination and applications, Ann. Statist. 49, 1736-1754;
-    blocks: Kuensch (1989) The
-jackknife and the bootstrap for general stationary observations, Ann. Statist. 17, 1217-1241.
+    blocks: Kuensch (1989) The jackknife and the bootstrap for general stationary observations, Ann. Statist.
+    17, 1217-1241.
 """
 
 from collections.abc import Sequence
