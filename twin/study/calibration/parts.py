@@ -32,13 +32,16 @@ WEATHER = tuple(map(of_role, ("wind", "shallow_water")))  # that a ship may neve
 
 def with_its_weather(tracks: Sequence[Track], found: Fit, known: Catalogue, temper: float) -> Fit:
     """The fit with each kind of WEATHER beside the core that was recorded on every voyage and makes them
-    clearly more probable."""
+    clearly more probable: begun where it stands beside the core as that is, for a step of all numbers at once
+    may promise too much of the others and be refused."""
     for weather in WEATHER:
         pushed = strengths(tracks, found.model, known).get(weather.__name__, 0.0) > PUSHED
         if not pushed or any(t.missing().intersection(weather.needs) for t in tracks):
             continue
-        unknowns = (*found.unknowns, *effect_unknowns(weather, Model(found.model.ship)))
-        beside = fit(tracks, found.model, unknowns, known, NoiseModel(), temper=temper, smooth=True)
+        own = effect_unknowns(weather, Model(found.model.ship))
+        alone = fit(tracks, found.model, own, known, NoiseModel(), temper=temper, smooth=True, begun=found)
+        every = (*found.unknowns, *own)
+        beside = fit(tracks, alone.model, every, known, NoiseModel(), temper=temper, smooth=True, begun=found)
         found = beside if beside.cost < found.cost - 2.0 * CLEARLY_BETTER else found
     return found
 

@@ -53,6 +53,12 @@ class Fit:
         return np.sqrt(np.diag(self.covariance))
 
     @property
+    def late(self) -> dict[str, float]:
+        """How late each instrument was found [s]: no model holds it."""
+        told = zip(self.unknowns, self.value.tolist(), strict=True)
+        return {u.label: value for u, value in told if u.owner == LATE}
+
+    @property
     def gained(self) -> np.ndarray:
         """(P,) share of each number's prior variance that the data took away."""
         prior = np.array([u.sd for u in self.unknowns])
@@ -68,6 +74,7 @@ def fit(
     *,
     temper: float = 1.0,
     smooth: bool = False,
+    begun: Fit | None = None,
 ) -> Fit:
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 
@@ -78,9 +85,10 @@ def fit(
     not end in a corner of their boxes; the last one is not judged. Only a fit that ends where resistance
     falls with speed is begun again, at the nearest place where it grows: a wall on the way led it elsewhere.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
-    filter follows is not found yet, and errs by more than they do."""
+    filter follows is not found yet, and errs by more than they do. `begun`: an earlier fit, from which what no
+    model holds (how late an instrument is) begins."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, noise_model, temper, smooth)
-    here, z = replace(problem, grows=False).best(problem.start())
+    here, z = replace(problem, grows=False).best(problem.start(begun))
     if not problem.resistance_grows(z):
         del here  # its columns are large
         here, z = problem.best(problem.nearest(z))
@@ -163,9 +171,10 @@ class _Problem:
         held = half_spaces if self.grows else where_it_dissipates
         return held(self.model.ship, self.unknowns)
 
-    def start(self) -> np.ndarray:
-        here = (np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd
-        return self.nearest(here)
+    def start(self, begun: Fit | None) -> np.ndarray:
+        late = begun.late if begun else {}
+        now = [late.get(u.label, _present(self.model, u)) for u in self.unknowns]
+        return self.nearest((np.array(now) - self.centre) / self.sd)
 
     def nearest(self, z: np.ndarray) -> np.ndarray:
         """The nearest place inside, in widths of priors."""
