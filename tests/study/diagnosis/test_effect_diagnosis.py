@@ -180,7 +180,7 @@ def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, 
         terminal_lines(known)
     )
     assert (
-        "Wind is no more than the reference voyages had: it is allowed for, and not called missing."
+        "Wind: no more of it than on the reference voyages; it is allowed for, and not called missing."
     ) in terminal_lines(known)
 
 

@@ -41,7 +41,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"{n['effect']} cannot be judged without {' and '.join(n['lacks'])}." for n in result["not_judged"]
     ]
     lines += [
-        f"{n} is no more than the reference voyages had: it is allowed for, and not called missing."
+        f"{n}: no more of it than on the reference voyages; it is allowed for, and not called missing."
         for n in result["as_on_references"]
     ]
     lines += [*waves_in_words(result["waves"]), *jumps_in_words(result["jumps"])]
@@ -58,7 +58,7 @@ def to_sail(m: dict[str, Any]) -> str:
     what = (
         f"tell {m['separates'][0]} from {m['separates'][1]}"
         if m["separates"]
-        else f"see {' and '.join(m['shows'])}, should they be there"
+        else f"see {' and '.join(m['shows'])}, should {'they' if len(m['shows']) > 1 else 'it'} be there"
     )
     return f"To {what}, sail: {m['manoeuvre']} ({m['why']})."
 

@@ -85,8 +85,8 @@ def fit(
     not end in a corner of their boxes; the last one is not judged. Only a fit that ends where resistance
     falls with speed is begun again, at the nearest place where it grows: a wall on the way led it elsewhere.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
-    filter follows is not found yet, and errs by more than they do. `begun`: an earlier fit, from which what no
-    model holds (how late an instrument is) begins."""
+    filter follows is not found yet, and errs by more than they do. `begun`: an earlier fit; what no model
+    holds (how late an instrument is) begins as it has it."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, noise_model, temper, smooth)
     here, z = replace(problem, grows=False).best(problem.start(begun))
     if not problem.resistance_grows(z):
