@@ -242,7 +242,8 @@ def showing(case: Case, model: Model, unseen: Sequence[str]) -> dict[str, object
     best = max(shown, key=lambda name: len(shown[name]), default="")
     if not best or not shown[best]:
         return None
-    why = f"{MANOEUVRES[best].doc}: it would show {len(shown[best])} of the {len(unseen)} that could not be seen"
+    of = f"{len(shown[best])} of the {len(unseen)} that could not be seen"
+    why = f"{MANOEUVRES[best].doc}: it would show {of}"
     return {"separates": [], "shows": shown[best], "manoeuvre": best, "why": why}
 
 

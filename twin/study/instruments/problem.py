@@ -72,6 +72,12 @@ class Rows:
         return out
 
 
+def _to_earth(y: np.ndarray, psi: np.ndarray) -> np.ndarray:
+    """(N, 2) to the north and east, of what is ahead and to starboard (N, 2) at these headings (N,) [rad]."""
+    c, s = np.cos(psi), np.sin(psi)
+    return np.column_stack([y[:, 0] * c - y[:, 1] * s, y[:, 0] * s + y[:, 1] * c])
+
+
 def _differences(columns: np.ndarray, weights: np.ndarray) -> Rows:
     """These weights (m,) times each m coefficients in a row, of every direction: `columns` (K, d)."""
     n = columns.shape[0] - weights.size + 1
@@ -126,11 +132,7 @@ class Problem:
         s = read.by["velocity"]
         if self.own:
             return s
-        psi = read.by["heading at velocity"].y[:, 0]
-        c, si = np.cos(psi), np.sin(psi)
-        return ReadingSamples(
-            s.t, np.column_stack([s.y[:, 0] * c - s.y[:, 1] * si, s.y[:, 0] * si + s.y[:, 1] * c])
-        )
+        return ReadingSamples(s.t, _to_earth(s.y, read.by["heading at velocity"].y[:, 0]))
 
     def _columns(self) -> None:
         """Every state's column: the path's, knot by knot, then the few of stream and wind."""
@@ -170,10 +172,8 @@ class Problem:
             )
         if self.wind is not None:
             wind = self.by["wind"]
-            psi = np.interp(wind.t, heading.t, heading.y[:, 0])
-            c, s = np.cos(psi), np.sin(psi)
-            from_n, from_e = wind.y[:, 0] * c - wind.y[:, 1] * s, wind.y[:, 0] * s + wind.y[:, 1] * c
-            x[self.at[2]] = -np.array([from_n.mean(), from_e.mean()]) + np.array(
+            comes_from = _to_earth(wind.y, np.interp(wind.t, heading.t, heading.y[:, 0]))
+            x[self.at[2]] = -comes_from.mean(0) + np.array(
                 [np.gradient(p, place[0]).mean() for p in place[1].T]
             )
         self.x = x
@@ -221,9 +221,7 @@ class Problem:
         v = self.by["velocity"]
         y = v.y
         if self.own:
-            psi = np.interp(v.t, self.by["heading"].t, self.by["heading"].y[:, 0])
-            c, s = np.cos(psi), np.sin(psi)
-            y = np.column_stack([y[:, 0] * c - y[:, 1] * s, y[:, 0] * s + y[:, 1] * c])
+            y = _to_earth(y, np.interp(v.t, self.by["heading"].t, self.by["heading"].y[:, 0]))
         steps = np.diff(v.t)[:, None] * 0.5 * (y[1:] + y[:-1])
         return v.t, np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
 
