@@ -12,7 +12,7 @@ from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_clock import clock_unit, text_format
 from twin.recording.suggest_entries import Entry
-from twin.recording.suggest_map import proved, suggestion
+from twin.recording.suggest_map import proved, suggestion, under_keel
 
 KNOT = 1852.0 / 3600.0
 T = np.arange(400.0)
@@ -302,3 +302,9 @@ def test_a_unit_of_time_that_a_check_proves_is_written_in():
     untouched = {"column": "time_s", "unit": "s"}
     assert not proved({}, untouched, either)
     assert untouched["unit"] == "s"
+
+
+def test_depth_below_the_keel_is_proposed_with_the_draught_to_be_added():
+    line = under_keel(["Remarks", "Water under keel [m]"]).strip()
+    assert line.startswith('# water_depth_m = { column = "Water under keel [m]", offset = ')
+    assert under_keel(["Remarks", "Keel laid"]) == ""

@@ -24,6 +24,7 @@ from twin.recording.suggest_log import of_signals
 
 CLOCK_PROVED = re.compile(r'In the map: \[time\] unit = "(\w+)"\.')
 PROVED = re.compile(r'that is believed\. In the map: (frame|unit|sign) = "?([^" ]+)"? for (both|[a-z_]+)\.')
+UNDER_KEEL = re.compile(r"(under|below|unter)[ _-]*(the[ _-]*)?(keel|kiel)|\bukc\b", re.IGNORECASE)
 ONE_SCREW = (
     "With a ship file of one rudder and one propeller (twin init --propellers 2), in the place of the lines "
     "of each actuator their means:"
@@ -101,7 +102,16 @@ def unused_columns(files: Sequence[SeenColumns], columns: dict[str, Entry], time
     used |= {e.keys["hemisphere"] for e in columns.values() if "hemisphere" in e.keys}
     used |= set(time["column"] if isinstance(time["column"], list) else [time["column"]])
     left = list(dict.fromkeys(n for f in files for n in f.names if n and f.key(n) not in used))
-    return f"\n# not used: {', '.join(left[:40])}{' ...' * (len(left) > 40)}\n" if left else ""
+    hint = "" if "water_depth_m" in columns else under_keel(left)
+    return f"{hint}\n# not used: {', '.join(left[:40])}{' ...' * (len(left) > 40)}\n" if left else ""
+
+
+def under_keel(left: Sequence[str]) -> str:
+    """A line that makes the depth of the water of a column that tells what is under the keel; "" without
+    one."""
+    column = next((name for name in left if UNDER_KEEL.search(name)), None)
+    depth = toml({"column": column, "offset": "DRAUGHT"})
+    return f"\n# water_depth_m = {depth}  # from the surface; the draught in metres\n" if column else ""
 
 
 def with_verdict(text: str, paths: Sequence[Path]) -> str:

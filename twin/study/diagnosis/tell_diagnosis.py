@@ -88,6 +88,7 @@ def _numbers(weather: dict[str, Any]) -> str:
         return stream_in_words(weather["stream"])
     numbers = ", ".join(
         f"{p['name']} {num(p['value'], 3)} {p['unit']}".rstrip()
+        + " (at the end of its box)" * p.get("at_box_end", False)
         for p in map(readable, weather["parameters"])
         if abs(p["value"]) > 0.0
     )
