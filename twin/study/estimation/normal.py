@@ -26,7 +26,7 @@ class Normal:
         return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
 
     def voyages(self) -> np.ndarray:
-        """(S,) to which voyage each segment belongs, by its place; of a single one, to which half."""
+        """(S,) to which voyage each segment belongs, by its place [count]; of a single one, to which half."""
         of = np.array([track for track, _, _ in self.where])
         return of if np.unique(of).size > 1 else (np.arange(of.size) * 2) // max(of.size, 1)
 
