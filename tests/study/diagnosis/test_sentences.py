@@ -61,3 +61,14 @@ def test_what_is_as_on_the_references_says_by_what_it_is(share, words):
     Expected: only the last is said of the instruments; of the others, single causes explained as much."""
     c = cause("HeadingBias", 0.95, on_references=share, posterior=0.95)
     assert words in why_not(c, "as_on_references")
+
+
+def test_of_a_healthy_ship_in_a_stream_the_first_words_are_that_nothing_of_it_is_missing():
+    stream = result(cause("Current", 0.99))
+    assert sentences.weather_only(stream).startswith(
+        "Of ship and instruments nothing is missing. What the model lacks is water and weather of these voyages: "
+        "Current (99 %)"
+    )
+    assert sentences.weather_at_least(stream).startswith(
+        "The model lacks water and weather of these voyages: "
+    )

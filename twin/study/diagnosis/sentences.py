@@ -54,8 +54,8 @@ def weather_only(result: Result) -> str:
     """The model lacks water or weather, and no more."""
     names = " and ".join(likely(result, n) for n in result["missing"])
     return (
-        f"Missing: {names}: water and weather of these voyages. Of ship and instruments nothing is "
-        f"missing.{_more(result)}"
+        "Of ship and instruments nothing is missing. What the model lacks is water and weather of these "
+        f"voyages: {names}.{_more(result)}"
     )
 
 
@@ -65,7 +65,7 @@ def weather_at_least(result: Result) -> str:
     besides = "Whether something of ship or instruments is missing besides, these voyages cannot tell."
     if result["one_of"]:
         besides = f"Beside it {' or '.join(result['one_of'])}: these voyages cannot tell which."
-    return f"Missing: {names}: water and weather of these voyages. {besides}{_more(result)}"
+    return f"The model lacks water and weather of these voyages: {names}. {besides}{_more(result)}"
 
 
 def nothing(result: Result) -> str:
