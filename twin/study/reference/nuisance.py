@@ -199,6 +199,8 @@ def _from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
         mean[mine] = np.array(stored["offset"], float)[theirs] / sd
         if not np.all(np.isfinite(covariance)) or not np.all(np.isfinite(mean)):
             raise ValueError("not finite")
+        if np.any(np.diag(covariance) < 0.0):
+            raise ValueError("a variance below zero")
         covariance += 1e-9 * np.eye(len(mine))
         np.linalg.cholesky(covariance)  # ValueError where it is none
         information[np.ix_(mine, mine)] = np.linalg.inv(covariance)
