@@ -39,7 +39,7 @@ def with_its_weather(tracks: Sequence[Track], found: Fit, known: Catalogue, temp
         if not pushed or any(t.missing().intersection(weather.needs) for t in tracks):
             continue
         own = effect_unknowns(weather, Model(found.model.ship))
-        alone = fit(tracks, found.model, own, known, NoiseModel(), temper=temper, smooth=True, begun=found)
+        alone = fit(tracks, found.model, own, known, NoiseModel(), temper=temper, smooth=True)
         every = (*found.unknowns, *own)
         beside = fit(tracks, alone.model, every, known, NoiseModel(), temper=temper, smooth=True, begun=found)
         found = beside if beside.cost < found.cost - 2.0 * CLEARLY_BETTER else found
@@ -47,7 +47,7 @@ def with_its_weather(tracks: Sequence[Track], found: Fit, known: Catalogue, temp
 
 
 def given(ship: Ship, unknown: Unknown) -> bool:
-    """Whether it is a number of the antenna's place that the owner knows: his ship file has it without a
+    """Whether it is a number of the antenna's place that the owner knows: the ship file has it without a
     standard error, as no fit does. It stays what it is."""
     entries = ship.notes.get("effects", {}).get(unknown.owner, {})
     entry = entries.get(unknown.name) if unknown.owner == of_role("antenna").__name__ else None
