@@ -11,8 +11,7 @@ from twin.recording.formats.actuator_guess import guess_actuator
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.suggest_clock import clock_unit, text_format
-from twin.recording.suggest_entries import Entry
-from twin.recording.suggest_map import proved, suggestion, under_keel
+from twin.recording.suggest_map import proved, suggestion
 
 KNOT = 1852.0 / 3600.0
 T = np.arange(400.0)
@@ -281,17 +280,6 @@ def test_what_a_check_proves_of_a_frame_is_in_the_proposal(tmp_path):
     assert text.count('frame = "earth"') == 2 and "prove. CONFIRM" in text
 
 
-def test_a_sign_that_a_check_proves_is_written_in():
-    said = (
-        "# rudder_sign: the rudder turns it to the other side: if the rudder is positive to port all of it "
-        "agrees; that is believed. In the map: sign = -1 for rudder_angle_deg.\n[columns]\n"
-    )
-    columns = {"rudder_angle_deg": Entry({"column": "Rudder (+ port)"}, ["unit by its name"])}
-    assert proved(columns, {}, said)
-    assert columns["rudder_angle_deg"].keys["sign"] == -1
-    assert columns["rudder_angle_deg"].why[-1].endswith("CONFIRM")
-
-
 def test_a_unit_of_time_that_a_check_proves_is_written_in():
     """The name of the column says seconds, the ship's motion says milliseconds."""
     said = '# velocity_frame: all of it agrees; that is believed. In the map: [time] unit = "ms".\n[time]\nunit = "s"\n'
@@ -302,9 +290,3 @@ def test_a_unit_of_time_that_a_check_proves_is_written_in():
     untouched = {"column": "time_s", "unit": "s"}
     assert not proved({}, untouched, either)
     assert untouched["unit"] == "s"
-
-
-def test_depth_below_the_keel_is_proposed_with_the_draught_to_be_added():
-    line = under_keel(["Remarks", "Water under keel [m]"]).strip()
-    assert line.startswith('# water_depth_m = { column = "Water under keel [m]", offset = ')
-    assert under_keel(["Remarks", "Keel laid"]) == ""

@@ -57,7 +57,8 @@ def serve():
 
 @pytest.fixture(scope="module")
 def spoiled(project):
-    """An owner's table in the project: Tuesday's voyage with the rudder positive to port."""
+    """An owner's table in the project, with the owner's own map: Tuesday's voyage with the rudder positive to
+    port, of which the map says nothing."""
     v = read_voyage(project.folder / "tuesday.mcap")
     names = [
         "north_m",
@@ -73,4 +74,6 @@ def spoiled(project):
     lines = [",".join(["time_s", *columns])]
     lines += [",".join("" if x != x else f"{x:.10g}" for x in row) for row in rows]
     (project.folder / "owner.csv").write_text("\n".join(lines) + "\n")
+    by = ['[time]\ncolumn = "time_s"\n\n[columns]', *(f'{name} = "{name}"' for name in columns)]
+    (project.folder / "owner-map.toml").write_text("\n".join(by) + "\n")
     return project.folder / "owner.csv"

@@ -27,7 +27,7 @@ ROLES = {  # what every ship may have one of, and by what the study asks for it
     "gear": "what stands between the rudder's order and the rudder",
     "antenna": "where position and speed over ground are measured",
     "wind": "how the wind that was recorded pushes the ship",
-    "shallow_water": "how the ship answers to the little water under its keel that was recorded",
+    "shallow_water": "how the ship answers to the depth that was recorded",
     "compass": "how far the compass is off, by the heading",
 }
 
@@ -144,8 +144,7 @@ class Effect:
     role: ClassVar[str] = ""
     # as the source of its numbers where calibration finds them together with the core; "": it does not
     with_core: ClassVar[str] = ""
-    # whether it is of the place (its bottom, its banks): a chart knows it, and it is not fitted along with
-    # what is added on a voyage
+    # whether it is of the place (bottom, banks): a chart knows it, and no `add` fits it beside others
     of_place: ClassVar[bool] = False
     # numbers of it that the readings alone tell, as `twin instruments` calls them, and each number's own name
     by_readings: ClassVar[Mapping[str, str]] = MappingProxyType({})

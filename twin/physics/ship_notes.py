@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-
-import numpy as np
+from math import inf
 
 from twin.errors import SettingsError
 
@@ -24,6 +23,6 @@ def read_from(ship: Ship, part: str) -> Iterator[None]:
 def positive(value: object) -> float:
     """A finite number above zero. ValueError, TypeError: it is none."""
     number = float(value)  # type: ignore[arg-type]
-    if not 0.0 < number < np.inf:
+    if not 0.0 < number < inf:
         raise ValueError(f"{value} is not above zero")
     return number
