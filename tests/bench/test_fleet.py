@@ -1,12 +1,13 @@
 """The fleet of families: ships that are ships, mirrored alike, and hidden things that show."""
 
+import argparse
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from bench.fleet import fleet_weather, hidden_causes, instrument_recording, sail, voyage_plan
+from bench.fleet import fleet_weather, hidden_causes, instrument_recording, run, sail, voyage_plan
 from bench.fleet.answer_score import Share, right, wrong_names
 from bench.fleet.decision_fit import healthy_limits
 from bench.fleet.fleet_legs import RUDDER, FleetLeg, zigzag
@@ -160,3 +161,12 @@ def test_what_healthy_voyages_end_within_leaves_each_family_out():
     rows = [row("near", k / 100) for k in range(101)] + [row("far", 3.0)] * 9 + [row("near", 9.0, "single")]
     limits = healthy_limits(rows)
     assert limits["far"] == pytest.approx(0.98) and limits["near"] == limits[""] == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("seeds", ["x", "0-y"])
+def test_seeds_that_are_no_numbers_are_one_line_that_shows_how_they_are_written(seeds, capsys):
+    parser = argparse.ArgumentParser()
+    run.add_arguments(parser)
+    with pytest.raises(SystemExit):
+        parser.parse_args(["folder", "--seeds", seeds])
+    assert f"{seeds!r} is no FIRST-LAST, as in 0-3" in capsys.readouterr().err

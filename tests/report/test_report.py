@@ -112,6 +112,10 @@ def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(
         "twin add Current",
     ):
         assert words in dom
+    weather = result | {"reason": "weather_only"}
+    report.write(tmp_path / "w.html", "diagnose", weather, [sailed(stream).track], Model.of(kvlcc2))
+    for page, badge in (("d", "missing"), ("w", "water and weather")):
+        assert f">{badge}</span>" in opened(tmp_path / f"{page}.html")[0]
 
 
 def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resembles(

@@ -1,6 +1,7 @@
 // The page, from the verdict down.
 function tone() {
   if (DATA.kind === "add") return RESULT.forced ? ["fair", "forced"] : RESULT.accepted ? ["good", "the error falls"] : ["bad", "not written"];
+  if (DATA.kind === "diagnose" && RESULT.reason === "weather_only") return ["fair", "water and weather"];
   if (DATA.kind === "diagnose") return { missing: ["bad", "missing"], nothing_missing: ["good", "nothing missing"], unknown: ["fair", "unknown cause"], undecided: ["fair", "undecided"] }[RESULT.verdict] || ["fair", RESULT.verdict];
   if (!RESULT.horizons.length) return ["fair", "not judged"];
   const times = RESULT.horizons.map((h) => Math.max(h.position_mae_m / h.noise_floor.position_mae_m, h.heading_mae_deg / h.noise_floor.heading_mae_deg));

@@ -9,7 +9,7 @@ import { timeView } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
 import { answerOf, earlier, foot, go, lacks, pickVoyages, theShip } from "/app/shared.js";
 
-const VERDICTS = { missing: ["bad", "something is missing"], nothing_missing: ["good", "nothing is missing"], unknown: ["fair", "something unknown"], undecided: ["fair", "these voyages cannot decide"] };
+const VERDICTS = { weather_only: ["fair", "water and weather are missing"], missing: ["bad", "something is missing"], nothing_missing: ["good", "nothing is missing"], unknown: ["fair", "something unknown"], undecided: ["fair", "these voyages cannot decide"] };
 const READING = { north_m: "x", east_m: "y", heading_true_north_deg: "psi", surge_velocity_mps: "u", sway_velocity_mps: "v", yaw_rate_degps: "r", surge_velocity_through_water_mps: "u_r", sway_velocity_through_water_mps: "v_r" };
 
 export async function diagnose(r) {
@@ -27,7 +27,7 @@ function asker(item) {
 }
 
 function answer(a, r) {
-  const d = a.result, view = timeView(), [look, words] = VERDICTS[d.verdict] || ["", d.verdict], voyages = a.view.voyages, name = r.query.get("voyage") || voyages[0].name, v = voyages.find((x) => x.name === name) || voyages[0];
+  const d = a.result, view = timeView(), [look, words] = VERDICTS[d.reason] || VERDICTS[d.verdict] || ["", d.verdict], voyages = a.view.voyages, name = r.query.get("voyage") || voyages[0].name, v = voyages.find((x) => x.name === name) || voyages[0];
   const chosen = r.query.get("with") ?? d.candidates[0]?.effect ?? d.weather[0]?.effect ?? "";
   const with_ = a.view.causes.find((c) => c.effect === chosen && c.lines), k = voyages.indexOf(v);
   const extra = { name: () => "model without it", look: () => "c-second", lines: (channel) => (with_ && READING[channel] in with_.lines[k] ? [{ name: `with ${with_.effect}`, y: unpack(with_.lines[k][READING[channel]]), look: "c-model" }] : []) };
