@@ -30,6 +30,9 @@ tests: budget others  ## pytest: what is inside its budget, alone; then the rest
 budget: $(VENV)/.development
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 
+# what one process compiled the others need not: they start some thousand commands
+export PYTHONDONTWRITEBYTECODE =
+
 # three processes more than cores, for tests of the service wait, and so do those that start commands; five at most
 SIDE_BY_SIDE = OMP_NUM_THREADS=1 $(BIN)/python -m pytest --dist loadfile -n \
 	$$($(BIN)/python -c "import os; print(min(5, os.cpu_count() + 3))")

@@ -102,8 +102,8 @@ def basin_figures(basin: Basin, root: Path) -> dict[str, Any]:
             {"name": s.voyage.name, "fitted": s in fitted, "duration_s": s.voyage.duration_s} for s in runs
         ],
         "published": [of_run(s, ship) for s in runs],
-        "published_on_others": ladder(others, ship),
-        "calibrated_on_others": ladder(others, after.ship),
+        "published_on_others": by_horizon(others, ship),
+        "calibrated_on_others": by_horizon(others, after.ship),
         "floor": after.result["floor"],
         "temper": after.result["temper"],
         "helm": [helm(s) for s in runs],
@@ -122,7 +122,7 @@ def voyages(basin: Basin, root: Path) -> list[Sailed]:
     return [Sailed(v, track(v, ship), "") for v in read]
 
 
-def ladder(runs: Sequence[Sailed], ship: Ship) -> list[dict[str, Any]]:
+def by_horizon(runs: Sequence[Sailed], ship: Ship) -> list[dict[str, Any]]:
     """Errors at each horizon over these runs, with dead reckoning (the motion at the start goes on) beside
     them."""
     done = compare(runs, Model.of(ship), HORIZONS_S)
@@ -135,7 +135,7 @@ def ladder(runs: Sequence[Sailed], ship: Ship) -> list[dict[str, Any]]:
 
 
 def of_run(s: Sailed, ship: Ship) -> dict[str, Any]:
-    return {"name": s.voyage.name, "horizons": ladder([s], ship)}
+    return {"name": s.voyage.name, "horizons": by_horizon([s], ship)}
 
 
 def helm(s: Sailed) -> dict[str, Any]:
@@ -156,7 +156,7 @@ def effect_gain(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], s
     longest horizon."""
     bench_output.tell(f"adding {name}")
     made = adding.fitted(ship, [find(name)], [s.track for s in fitted])
-    before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*made.model.effects)))
+    before, after = (by_horizon(others, s)[-1] for s in (ship, ship.with_effects(*made.model.effects)))
     return {
         "effect": name,
         "numbers": [{"name": n.name, **n.entry()} for n in made.numbers],

@@ -3,18 +3,18 @@
 import copy
 import logging
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
 from twin import whole
 from twin.num import num
+from twin.recording.progress import Progress
 
 if TYPE_CHECKING:
     import pandas
 
 PathLike = str | os.PathLike[str]
-Progress = Callable[[str], None]
 LOG = logging.getLogger("twin")
 
 

@@ -14,6 +14,7 @@ from twin.physics.ship import load
 from twin.recording.checks.proved_wrong import refusal
 from twin.recording.import_voyage import import_voyage
 from twin.recording.jsonable import plain
+from twin.recording.progress import Progress
 from twin.recording.read import read_voyage
 from twin.recording.ship_file_writer import save
 from twin.recording.write import write_voyage
@@ -28,18 +29,17 @@ from twin.study.reference.sailed import Sailed, read_all
 from twin.study.track.track import Track
 
 Request = dict[str, Any]
-Tell = Callable[[str], None]
 LONGEST_LINE = 200  # of a ship file's difference: a covariance stands on one line
 
 
-def look(asked: Request, job: Path, tell: Tell) -> None:
+def look(asked: Request, job: Path, tell: Progress) -> None:
     tell(f"reading {asked['file']}")
     write_result(
         job, "result.json", plain(looked(Path(), asked["file"], asked.get("map"), asked.get("ship"), job))
     )
 
 
-def import_(asked: Request, job: Path, tell: Tell) -> None:
+def import_(asked: Request, job: Path, tell: Progress) -> None:
     tell(f"reading {asked['file']}")
     not_there(asked["output"])
     accept = asked.get("accept", ())
@@ -53,7 +53,7 @@ def import_(asked: Request, job: Path, tell: Tell) -> None:
     write_voyage(found.voyage, asked["output"])
 
 
-def compare(asked: Request, job: Path, tell: Tell) -> None:
+def compare(asked: Request, job: Path, tell: Progress) -> None:
     ship, sailed = load(asked["ship"]), _read(asked["voyages"], asked["ship"], tell)
     tell("predicting")
     found = comparison.of_sailed(ship, sailed, HORIZONS_S)
@@ -65,7 +65,7 @@ def compare(asked: Request, job: Path, tell: Tell) -> None:
     _view("compare", result, job, tell, found.model, sailed)
 
 
-def diagnose(asked: Request, job: Path, tell: Tell) -> None:
+def diagnose(asked: Request, job: Path, tell: Progress) -> None:
     from twin.study.diagnosis.effect_diagnosis import diagnose as judged
 
     ship = load(asked["ship"])
@@ -90,7 +90,7 @@ def diagnose(asked: Request, job: Path, tell: Tell) -> None:
     write_view(job, drawn, {"causes": causes, "forces": [force_view(t, model) for t in tracks]})
 
 
-def calibrate(asked: Request, job: Path, tell: Tell) -> str | None:
+def calibrate(asked: Request, job: Path, tell: Progress) -> str | None:
     not_there(asked["output"])
     ship = load(asked["ship"])
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
@@ -106,7 +106,7 @@ def calibrate(asked: Request, job: Path, tell: Tell) -> str | None:
     return None if done.accepted else f"{done.refused} {asked['output']} was not written."
 
 
-def add(asked: Request, job: Path, tell: Tell) -> str | None:
+def add(asked: Request, job: Path, tell: Progress) -> str | None:
     from twin.study.update.added import refused
     from twin.study.update.addition import add as fitted
 
@@ -144,7 +144,7 @@ def add(asked: Request, job: Path, tell: Tell) -> str | None:
     )
 
 
-DO: dict[str, Callable[[Request, Path, Tell], str | None]] = {
+DO: dict[str, Callable[[Request, Path, Progress], str | None]] = {
     "look": look,
     "import": import_,
     "compare": compare,
@@ -154,12 +154,12 @@ DO: dict[str, Callable[[Request, Path, Tell], str | None]] = {
 }
 
 
-def _read(paths: list[str], ship: str, tell: Tell) -> list[Sailed]:
+def _read(paths: list[str], ship: str, tell: Progress) -> list[Sailed]:
     tell(f"reading {', '.join(paths)}")
     return read_all(paths, load(ship))
 
 
-def _view(kind: str, result: Request, job: Path, tell: Tell, model: Model, sailed: list[Sailed]) -> None:
+def _view(kind: str, result: Request, job: Path, tell: Progress, model: Model, sailed: list[Sailed]) -> None:
     tell("drawing")
     tracks: list[Track] = [s.track for s in sailed]
     drawn = content(kind, result, tracks, model, voyages=[s.voyage for s in sailed])

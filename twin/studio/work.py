@@ -9,9 +9,8 @@ from typing import Any
 
 from twin import whole
 from twin.errors import ThresholdError, TwinError
+from twin.recording.progress import Progress
 from twin.studio.jobs import END, JOB, PROGRESS
-
-Tell = Callable[[str], None]
 
 
 def main(folder: Path) -> int:
@@ -31,7 +30,7 @@ def main(folder: Path) -> int:
     return code
 
 
-def _done(asked: dict[str, Any], folder: Path, tell: Tell) -> str | None:
+def _done(asked: dict[str, Any], folder: Path, tell: Progress) -> str | None:
     """Does it; the sentence of a threshold that is not met, if there is one."""
     from twin.studio import answers
 

@@ -79,7 +79,7 @@ class Parquet(Packed):
     def _pieces(self, names: Sequence[str]) -> Iterator[Piece]:
         for batch in self._file.iter_batches(batch_size=100_000, columns=list(names)):
             yield {
-                name: plain(self.path, name, batch.column(batch.schema.get_field_index(name)))
+                name: arrow_cells(self.path, name, batch.column(batch.schema.get_field_index(name)))
                 for name in names
             }
 
@@ -97,7 +97,7 @@ class Feather(Packed):
         for i in range(self._file.num_record_batches):
             batch = self._file.get_batch(i)
             yield {
-                name: plain(self.path, name, batch.column(batch.schema.get_field_index(name)))
+                name: arrow_cells(self.path, name, batch.column(batch.schema.get_field_index(name)))
                 for name in names
             }
 
@@ -135,7 +135,7 @@ class Excel(Packed):
             yield {name: cells(values) for name, values in held.items()}
 
 
-def plain(path: Path, name: str, column: Any) -> Any:
+def arrow_cells(path: Path, name: str, column: Any) -> Any:
     """An Arrow column as floats (moments as seconds since 1970), or as words. DataError: its cells are of
     a kind that no reading has."""
     import pyarrow as pa

@@ -1,7 +1,7 @@
 """`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves
 unexplained."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -10,6 +10,7 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
+from twin.recording.progress import Progress, silent
 from twin.study.calibration.calibration_record import (
     PARTS,
     Core,
@@ -85,7 +86,7 @@ class FittedCore:
 
     def calibrated(
         self,
-        progress: Callable[[str], None] = lambda text: None,
+        progress: Progress = silent,
         measured_by: "FittedCore | None" = None,
     ) -> Calibrated:
         """With what is usual on this ship. `measured_by`: the fit whose errors on what was held out count,
@@ -103,7 +104,7 @@ def calibrate(
     fitted: Sequence[Sailed],
     held_out: HeldOut,
     ship: Ship,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Calibrated:
     """Fit the core to the tracks, and learn what is usual on this ship."""
     return fitted_core(fitted, held_out, ship, progress).calibrated(progress)
@@ -113,7 +114,7 @@ def fitted_core(
     fitted: Sequence[Sailed],
     held_out: HeldOut,
     ship: Ship,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
     by: str | None = None,
     begun: FittedCore | None = None,
 ) -> FittedCore:
@@ -145,7 +146,7 @@ def fitted_core(
 
 
 def _with_its_antenna(
-    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], begun: Begun | None
+    sailed: Sequence[Track], ship: Ship, progress: Progress, begun: Begun | None
 ) -> tuple[Core, Curve]:
     """The core, and the numbers of the compass's deviation that were fitted beside it, if the voyages ask for
     them. Where the antenna stands elsewhere than in the file it is in the model from the start: what heel and
@@ -176,7 +177,7 @@ def _moved(found: Core, ship: Ship, begun: Effect) -> Core:
 
 
 def _beside_its_compass(
-    sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None], begun: Begun | None
+    sailed: Sequence[Track], ship: Ship, progress: Progress, begun: Begun | None
 ) -> tuple[Core, Curve]:
     """The same with the antenna where this ship has it."""
     start, curve = (begun.noise_model, begun.curve) if begun else (None, ())
@@ -198,7 +199,7 @@ def _deviating(ship: Ship) -> Ship:
 def _rough(
     sailed: Sequence[Track],
     ship: Ship,
-    progress: Callable[[str], None],
+    progress: Progress,
     begun: Begun | None,
     curve: Curve = (),
 ) -> RoughCore:
@@ -238,13 +239,13 @@ def _rough(
     return RoughCore(ship, tracks, rough, curve, own_deviation(parts, rough, known, TEMPER))
 
 
-def _in_its_sea(sailed: Sequence[Track], model: Model, progress: Callable[[str], None]) -> list[Track]:
+def _in_its_sea(sailed: Sequence[Track], model: Model, progress: Progress) -> list[Track]:
     """The tracks with the swing in waves, where it shows beside this model, whose gear was looked for."""
     progress("testing again whether waves move the ship")
     return [levelled(swung(t, model, gear=False)) for t in sailed]
 
 
-def _core(rough: RoughCore, progress: Callable[[str], None], start: NoiseModel | None) -> Core:
+def _core(rough: RoughCore, progress: Progress, start: NoiseModel | None) -> Core:
     """The core under the noise model that these voyages ask for."""
     ship, tracks, begun, unknowns = rough.ship, rough.tracks, rough.fit, rough.fit.unknowns
     progress("estimating the noise model")

@@ -5,6 +5,8 @@ from itertools import takewhile
 from time import monotonic
 from typing import NamedTuple
 
+from twin.recording.progress import Progress
+
 SHOWN_FROM = 0.1  # share of the work that must be done before a remaining time means anything
 LEAST_LEFT_S = 10.0  # less is not told
 CORE, SEA, NOISE_MODEL = "fitting the core", "testing again whether waves", "estimating the noise model"
@@ -47,7 +49,7 @@ class Stages:
 
     def __init__(
         self,
-        tell: Callable[[str], None],
+        tell: Progress,
         every: float | None,
         clock: Callable[[], float] = monotonic,
     ) -> None:

@@ -1,12 +1,13 @@
 """The ways in which a ship is fitted to its voyages, and which of them predicts what was not used best."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from twin.physics.effects import of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.recording.progress import Progress
 from twin.study.calibration.held_out import HeldOut, HeldOutErrors, errors, size
 from twin.study.calibration.rollout import rolled_out
 from twin.study.estimation.columns import Unknown
@@ -47,7 +48,7 @@ def best_way(
     *,
     by: str | None,
     found_curve: bool,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> FittedShip:
     """The best of the ships to choose from: fitted by steps, or from there along the path; and, where the
     compass's deviation was found beside the core, without it, for the next voyage may not have it."""

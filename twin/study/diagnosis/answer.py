@@ -1,9 +1,10 @@
 """The answer to one search: what was weighed, the facts, and the decision."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from twin.physics.ship import Ship
+from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics, suspected_instruments
@@ -16,8 +17,6 @@ from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.search import search
 from twin.study.diagnosis.verdict import Weights, weights
 from twin.study.reference.evidence import Hypothesis
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -73,7 +72,7 @@ def answer(
     voyages: Sequence[Voyage],
     ship: Ship,
     references: Sequence[Voyage] = (),
-    progress: Progress = lambda text: None,
+    progress: Progress = silent,
 ) -> SearchAnswer:
     """Search, facts and decision; where an instrument is suspected, beside what kinematics say of it."""
     searched, asked = search(case, progress), None

@@ -1,6 +1,6 @@
 """From voyages and a ship file to a case that can be judged: tracks, candidates, what is known beforehand."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ from twin.physics.effects import of_ship, unnamed_of
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.ship_notes import positive, read_from
+from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import MOST_SEGMENTS, ODDS, ODDS_UNNAMED, ODDS_WEATHER, Case, settle
 from twin.study.diagnosis.open_loop_check import horizon_s
@@ -41,14 +42,12 @@ from twin.study.track.excitation import manoeuvred
 from twin.study.track.segments import long_enough, longest_s, too_short
 from twin.study.track.track import Track, track
 
-Progress = Callable[[str], None]
-
 
 def assemble(
     voyages: Sequence[Voyage],
     ship: Ship,
     references: Sequence[Voyage] = (),
-    progress: Progress = lambda text: None,
+    progress: Progress = silent,
 ) -> Case:
     """Everything `search` needs. DataError: the voyages cannot be used at all; SettingsError: the ship file
     does not hold a calibration as it was written."""
@@ -83,7 +82,7 @@ def of_tracks(
     sailed: Sequence[Track],
     ship: Ship,
     references: Sequence[Voyage] = (),
-    progress: Progress = lambda text: None,
+    progress: Progress = silent,
     asked: Sequence[type[Effect]] = (),
 ) -> Case:
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the

@@ -1,7 +1,7 @@
 """`twin diagnose`: which physical effect is missing, in newtons, with its confidence, or an honest answer
 that is none."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
+from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.against_healthy import healthy_in_words
 from twin.study.diagnosis.altered import sized
@@ -56,7 +57,7 @@ def diagnose(
     voyages: Sequence[Voyage],
     ship: Ship,
     references: Sequence[Voyage] = (),
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Diagnosed:
     """Judge all candidates jointly on these voyages. DataError: there is none, one is given twice or too
     short, or a sign, unit or frame of one is proved wrong; SettingsError: the ship file is damaged."""
@@ -114,7 +115,7 @@ def _decided(told: SearchAnswer) -> dict[str, Any]:
     }
 
 
-def _listed(told: SearchAnswer, progress: Callable[[str], None]) -> list[dict[str, Any]]:
+def _listed(told: SearchAnswer, progress: Progress) -> list[dict[str, Any]]:
     """The candidates of the answer: what is named first, then the most probable; with their strength in each
     part of the voyages where the likeliest set holds them."""
     w, missing = told.weights, told.decision.missing
@@ -250,9 +251,7 @@ def _weather(told: SearchAnswer, name: str, probability: float) -> dict[str, Any
     }
 
 
-def _next(
-    told: SearchAnswer, listed: Sequence[dict[str, Any]], progress: Callable[[str], None]
-) -> dict[str, Any] | None:
+def _next(told: SearchAnswer, listed: Sequence[dict[str, Any]], progress: Progress) -> dict[str, Any] | None:
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
     decision, case, found = told.decision, told.case, told.found
     if decision.verdict == "nothing_missing":

@@ -10,8 +10,9 @@ from dataclasses import replace
 from math import inf
 
 from twin.physics.ship import Ship
+from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
-from twin.study.diagnosis.answer import Progress, SearchAnswer, answer
+from twin.study.diagnosis.answer import SearchAnswer, answer
 from twin.study.diagnosis.as_filed import model_with
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.consider import Considered
@@ -28,7 +29,7 @@ def with_further(
     voyages: Sequence[Voyage],
     ship: Ship,
     references: Sequence[Voyage] = (),
-    progress: Progress = lambda text: None,
+    progress: Progress = silent,
 ) -> SearchAnswer:
     """The answer with what is named once its causes are in the model, until nothing more is, or there are
     MAX_CAUSES; the same where it names none, or where no other cause deserves a second look."""

@@ -15,7 +15,7 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, Case
-from twin.study.diagnosis.open_loop_check import plain
+from twin.study.diagnosis.open_loop_check import in_plain_scenario
 from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
@@ -96,7 +96,7 @@ def _goes_on(before: Moment, after: Moment) -> bool:
 def stretches(case: Case, found: Found) -> list[Moment]:
     """Every stretch of each length, with what it says."""
     lines, at = standing(case, found)
-    noise_model = case.scenarios([plain(found.hypothesis).scenario], found.doubt)[0]
+    noise_model = case.scenarios([in_plain_scenario(found.hypothesis).scenario], found.doubt)[0]
     normal = innovate(lines, [noise_model], MOST_SEGMENTS)[0]
     theta = likeliest(
         normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects

@@ -31,7 +31,7 @@ HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are pre
 COMPLEXITY = 10.0
 # windows that count: what the core misses is the same in all of them, and more of the same tells no more
 MAX_WINDOWS = 40.0
-FORM = 0.1  # share of what an effect does to the path that its form may miss
+FORM_MISSES = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
 DEGRADED = 0.05  # share by which two effects lead it farther off than one of them, so that the other is none
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
@@ -139,7 +139,7 @@ def open_loop_check(
         for s in off
     }
     ends = {
-        s: _expected_error(plain(found[s].hypothesis), expected_m, off[()], irregular, levered[s])
+        s: _expected_error(in_plain_scenario(found[s].hypothesis), expected_m, off[()], irregular, levered[s])
         for s in off
     }
     asked = {s: replace(found[s], open_loop_error_m=m, expected_error_m=ends[s]) for s, m in off.items()}
@@ -152,7 +152,7 @@ def expected_errors(case: Case) -> dict[str, float]:
     levels = _levels(case)
     steps = dict(zip(SCENARIOS, _usual(case, case.scenarios(list(SCENARIOS)), bool(levels)), strict=True))
     # what is run free is a core alone, and as good as it was when nothing was wrong
-    level = float(np.exp(np.mean(np.log(levels)))) if levels else _no_nearer(case, steps["coarse"])
+    level = float(np.exp(np.mean(np.log(levels)))) if levels else _as_once_measured(case, steps["coarse"])
     known = roughly(case)
     return {name: float(np.hypot(level * max(m, steps["coarse"]), known)) for name, m in steps.items()}
 
@@ -165,12 +165,12 @@ def _levels(case: Case) -> list[float]:
     return [level for level in levels if level is not None]
 
 
-def _no_nearer(case: Case, coarse_m: float) -> float:
+def _as_once_measured(case: Case, coarse_m: float) -> float:
     """The same where the two were not compared: no nearer than calibration measured."""
     return max(1.0, measured_error_m(case) / coarse_m)
 
 
-def plain(h: Hypothesis) -> Hypothesis:
+def in_plain_scenario(h: Hypothesis) -> Hypothesis:
     """The same in a noise scenario that is no rougher than on the reference voyages."""
     return (
         h
@@ -193,7 +193,7 @@ def _expected_error(
 ) -> float:
     """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does
     is left; more of one that comes and goes, or whose side force may attack elsewhere."""
-    left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM if h.effects else 0.0
+    left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM_MISSES if h.effects else 0.0
     return float(np.hypot.reduce([expected_m[h.scenario], left * nothing_m, levered_m]))
 
 

@@ -22,7 +22,7 @@ from twin.study.estimation.innovations import innovate
 from twin.study.reference.evidence import reduce
 
 PARTS = 4  # of a voyage, at most; a part holds whole segments of the filter
-FORM = 0.25  # a share that differs by so much is the form of the effect, not its time
+FORM_DIFFERS = 0.25  # a share that differs by so much is the form of the effect, not its time
 DIFFERENT_SD = 4.0  # standard deviations by which two parts must differ
 
 
@@ -60,7 +60,7 @@ def changes(parts: Sequence[dict[str, Any]]) -> bool:
     if len(parts) < 2:
         return False
     share, sd = (np.array([p[key] for p in parts]) for key in ("share", "sd"))
-    apart = np.abs(share[:, None] - share) - FORM
+    apart = np.abs(share[:, None] - share) - FORM_DIFFERS
     return bool((apart > DIFFERENT_SD * np.hypot(sd[:, None], sd)).any())
 
 
@@ -77,13 +77,13 @@ def varying(case: Case, found: Found) -> dict[str, float]:
 
 def log_bayes_factor(parts: Sequence[dict[str, Any]]) -> float:
     """How much likelier the sizes of these parts are when they scatter within a voyage, by the likeliest of
-    SHARES, than when each voyage has one, which its form tells as far as FORM [log Bayes factor]."""
+    SHARES, than when each voyage has one, which its form tells as far as FORM_DIFFERS [log Bayes factor]."""
 
     def evidence(scatter: float) -> float:
         out = 0.0
         for voyage in {p["voyage"] for p in parts}:
             share, sd = (np.array([p[k] for p in parts if p["voyage"] == voyage]) for k in ("share", "sd"))
-            weight = 1.0 / (sd**2 + FORM**2 + scatter**2)
+            weight = 1.0 / (sd**2 + FORM_DIFFERS**2 + scatter**2)
             off = share - np.average(share, weights=weight)
             # the voyage's own size integrated out
             out += 0.5 * float(np.log(weight).sum() - np.log(weight.sum()) - (weight * off**2).sum())

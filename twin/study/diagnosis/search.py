@@ -6,7 +6,6 @@ was not yet relinearised at its estimate is, and with it all that have one effec
 that could still win. Water and weather of the voyages are a nuisance of every hypothesis: any of them may
 stand beside any cause, and takes no cause's place."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
@@ -14,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.physics.effect import SensorFault
+from twin.recording.progress import Progress, silent
 from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case, visible
 from twin.study.diagnosis.consider import left_over
 from twin.study.diagnosis.criteria import NEARLY
@@ -26,8 +26,8 @@ from twin.study.reference.evidence import Hypothesis, Reduced, posterior, weigh_
 
 MAX_CAUSES = 3  # causes at once
 AT_FIRST = 2  # of which so many in the linear pass; one more only beside what was relinearised
-KINDS = 3  # of weather at once in the linear pass
-DAYS = 2  # sets of weather beside which every pair of causes is asked
+MOST_WEATHER = 3  # of weather at once in the linear pass
+WEATHER_SETS = 2  # sets of weather beside which every pair of causes is asked
 ROUNDS = 20  # hypotheses relinearised at their estimates, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
 # so many more single effects when nothing plain was found, and sets of one cause more where that leaves too
@@ -50,7 +50,7 @@ class Searched(NamedTuple):
     path: OpenLoopCheck  # where those that could be the answer lead the ship
 
 
-def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
+def search(case: Case, progress: Progress = silent) -> Searched:
     """All hypotheses with their weights, judged one step ahead and along the path."""
     progress("weighing every effect and every pair")
     scenarios = dict(zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True))
@@ -64,7 +64,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     return searched
 
 
-def _searched(book: "Hypotheses", progress: Callable[[str], None], seen: dict[str, bool]) -> Searched:
+def _searched(book: "Hypotheses", progress: Progress, seen: dict[str, bool]) -> Searched:
     """What the book says once nothing is left to be judged."""
     for _ in range(ROUNDS):
         chosen = book.next()
@@ -90,7 +90,7 @@ def _linear(case: Case, reduced: Reduced, scenario: str) -> list[tuple[Sets, flo
     some = [name for name in case.weather if case.odds[name] > ODDS_WEAK]
     days = [
         day
-        for size in range(KINDS + 1)
+        for size in range(MOST_WEATHER + 1)
         for day in combinations(some, size)
         if np.isfinite(case.log_prior(day, "usual"))
     ]
@@ -102,7 +102,7 @@ def _linear(case: Case, reduced: Reduced, scenario: str) -> list[tuple[Sets, flo
     for chosen, evidence in told:
         day, weight = case.day(chosen), evidence + case.log_prior(chosen, scenario)
         likely[day] = max(weight, likely.get(day, -np.inf))
-    best = sorted(likely, key=lambda day: -likely[day])[:DAYS]
+    best = sorted(likely, key=lambda day: -likely[day])[:WEATHER_SETS]
     more = [few for size in range(2, AT_FIRST + 1) for few in combinations(causes, size)]
     return [*told, *weigh_sets(reduced, [case.ordered((*day, *few)) for day in best for few in more])]
 

@@ -1,8 +1,9 @@
 """The fleet asked: what is not known yet is spread over processes, and every answer is kept as it comes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from twin.recording.progress import Progress
 from twin.study.fleet.ask import Job, Row, ask, failed, job_of, key_of
 from twin.study.fleet.listing import FleetShip
 from twin.study.fleet.row_store import Store, lasting
@@ -24,7 +25,7 @@ def run(
     store: Store,
     workers: int,
     scheduler: str | None,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> FleetRows:
     """Ask what the store does not know, and give the rows of every voyage of the list."""
     jobs = [[job_of(ship, voyage) for voyage in ship.voyages] for ship in ships]

@@ -1,11 +1,12 @@
 """`estimate`: from voyages to what is wrong with each instrument, how much, how surely, and what cannot be
 known from them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
 from twin.study.instruments.findings import CLOCKS, OF_ATTITUDE, InstrumentEstimate, Instruments, said
 from twin.study.instruments.instrument_samples import Readings, of_track, of_voyage
@@ -20,7 +21,6 @@ __all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
 ROUNDS = 4  # selections, each about a new fit
 OWN_TURN_LOG_BAYES = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
 BY_OWN = {False: "compass", True: "receiver"}  # whether the receiver turned it itself -> what did
-Progress = Callable[[str], None]
 # by which it is asked what turned a velocity: the gyro's scale is told only where the receiver did, and would
 # speak for it wherever a gyro is off
 OF_TURNING = [u.name for u in UNKNOWNS if u.name != "gyro_scale"]
@@ -31,7 +31,7 @@ KNOWN_TURNS: WeakKeyDictionary[Readings, dict[float, float]] = WeakKeyDictionary
 def estimate(
     voyages: Sequence[Voyage | Track | Readings],
     length_m: float | None = None,
-    progress: Progress = lambda text: None,
+    progress: Progress = silent,
     clock: str | None = None,
     own: bool | None = None,
     varying: bool = False,

@@ -30,9 +30,9 @@ from twin.study.reference.nuisance import Known, of_known_weather, of_no_calibra
 from twin.study.reference.reading import MOST_SEGMENTS, read_lines
 from twin.study.track.track import Track
 
-KINDS = 2  # of weather at once
+MOST_WEATHER = 2  # of weather at once
 TELLS = 1e-6  # information about a number, in prior widths, below which there is none
-DAYS = 3  # sets of weather beside which every cause is asked
+WEATHER_SETS = 3  # sets of weather beside which every cause is asked
 
 
 class Healthy(NamedTuple):
@@ -50,9 +50,9 @@ def score(reduced: Reduced, causes: Sequence[str], weather: Sequence[str]) -> fl
     being there or not either way; below zero where none explains as much as its freedom costs."""
     tell = np.diag(reduced.A)
     causes = [name for name in causes if np.any(tell[reduced.rows((name,))] > TELLS)]
-    days = [day for size in range(KINDS + 1) for day in combinations(weather, size)]
+    days = [day for size in range(MOST_WEATHER + 1) for day in combinations(weather, size)]
     alone = sorted(weigh_sets(reduced, days), key=lambda e: -e[1])
-    best = [day for day, _ in alone[:DAYS]]
+    best = [day for day, _ in alone[:WEATHER_SETS]]
     sets = [(*day, name) for day in best for name in causes]
     return max((e for s, e in weigh_sets(reduced, sets) if s), default=alone[0][1]) - alone[0][1]
 

@@ -2,7 +2,7 @@
 feed."""
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,7 @@ from twin.errors import DataError
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.recording.progress import Progress, silent
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.reference.derivatives import with_one_step_core
@@ -48,9 +49,7 @@ def samples_hash(voyage: Voyage) -> str:
     return known.hexdigest()
 
 
-def read_all(
-    paths: Sequence[str], ship: Ship, progress: Callable[[str], None] = lambda text: None
-) -> list[Sailed]:
+def read_all(paths: Sequence[str], ship: Ship, progress: Progress = silent) -> list[Sailed]:
     """Every voyage, ready; DataError names the file that cannot be used, or that was given twice. `progress`
     is told which file is read."""
     out: list[Sailed] = []

@@ -6,7 +6,7 @@ effect are integrated out as the reference voyages left them. The water and the 
 part of the ship: a stream, constant or slowly varying, and wind and sea that were recorded and that the model
 does not know, stand beside the named effects where they make the voyages likelier."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.recording.progress import Progress, silent
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.as_filed import in_file, model_with
 from twin.study.diagnosis.assemble import of_tracks
@@ -39,7 +40,6 @@ FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
     "wave_to": "wave_direction_deg",
 }
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def fitted(
     ship: Ship,
     effects: Sequence[type[Effect]],
     tracks: Sequence[Track],
-    progress: Progress = lambda text: None,
+    progress: Progress = silent,
 ) -> Fitted:
     """These effects where the voyages have them, beside the voyages' own water and weather. SettingsError:
     an effect is none that these voyages can be asked about."""

@@ -1,7 +1,7 @@
 """`twin add`: put a named effect into a ship's model, fit it, and prove that what was not fitted is likelier
 with it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,13 +10,14 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
+from twin.recording.progress import Progress, silent
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 from twin.study.update.added import notes, verdict, written
 from twin.study.update.adding import fitted, require_inputs, thirds
-from twin.study.update.fall import Fall, by_regime, fall, ladder
+from twin.study.update.fall import Fall, by_regime, error_rows, fall
 from twin.study.update.held_parts import predicted
 from twin.study.update.proof import HeldOutProof, prove
 
@@ -45,7 +46,7 @@ def add(
     held_out: Sequence[Sailed] = (),
     force: bool = False,
     cross_validated: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Added:
     """Fit the effects to the voyages and judge them on the held-out ones; without any on the last third of
     each, or (`cross_validated`) on every third in turn. DataError: a sign, unit or frame of one is proved
@@ -66,7 +67,7 @@ def add(
         float(ship.scale("time")),
     )
     structural = noise_model_of(ship) is not None
-    rows = ladder(windows.before, windows.after, HORIZONS_S, ship, structural)
+    rows = error_rows(windows.before, windows.after, HORIZONS_S, ship, structural)
     shown = fall(windows.before, windows.after, [row["horizon_s"] for row in rows])
     parts = (
         {} if kind == HELD_OUT else {"part": "last third" if kind == LAST_THIRD else "every third in turn"}

@@ -2,8 +2,7 @@
 as the search of a diagnosis weighs it (search.py), with where each set leads the ship. So `twin add` has the
 number that `twin diagnose` told."""
 
-from collections.abc import Callable
-
+from twin.recording.progress import Progress, silent
 from twin.study.diagnosis.case import SCENARIOS, Case, visible
 from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.open_loop_check import open_loop_check
@@ -15,7 +14,7 @@ from twin.study.reference.evidence import Hypothesis, Reduced, posterior, weigh_
 TRIED = 2  # kinds of weather beside each set, the likeliest to first order
 
 
-def beside_the_voyage(case: Case, names: Sets, progress: Callable[[str], None] = lambda text: None) -> Found:
+def beside_the_voyage(case: Case, names: Sets, progress: Progress = silent) -> Found:
     """The named effects with the weather beside which they are likeliest, relinearised at their estimate."""
     search = WeatherSearch(case, names)
     while more := search.likely():

@@ -86,7 +86,7 @@ def _size(w: Windows, reading: int | None, horizon_s: float) -> np.ndarray:
     return np.abs(w.off()[k, :, reading]) * (180.0 / np.pi if UNITS[reading].startswith("deg") else 1.0)
 
 
-def ladder(
+def error_rows(
     before: Sequence[Windows],
     after: Sequence[Windows],
     horizons_s: Sequence[float],
