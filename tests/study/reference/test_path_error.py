@@ -137,7 +137,7 @@ def test_a_stream_is_known_from_the_past_alone(kvlcc2, make):
     t, model = track(make(find("Current").absent(kvlcc2).but(east=0.3)), kvlcc2), Model.of(kvlcc2)
     S = prior(model, [t], AHEAD).at(120.0)
     windows = predict(t, model, AHEAD)
-    mended = settled(windows, model, S, 120.0)
+    mended = settled(windows, model, S, 120.0).windows
     k, late = windows.at(120.0), t.t[windows.start] > 600.0
     assert np.nanmean(mended.errors()["position"][k, late]) < 0.5 * np.nanmean(
         windows.errors()["position"][k, late]
@@ -145,7 +145,7 @@ def test_a_stream_is_known_from_the_past_alone(kvlcc2, make):
     moved = replace(windows, seen=np.where(t.t[:, None] > 1000.0, windows.seen + 50.0, windows.seen))
     early = t.t[windows.start] < 1000.0
     assert np.array_equal(
-        settled(moved, model, S, 120.0).promised[MODEL][:, early], mended.promised[MODEL][:, early]
+        settled(moved, model, S, 120.0).windows.promised[MODEL][:, early], mended.promised[MODEL][:, early]
     )
 
 

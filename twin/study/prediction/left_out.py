@@ -16,7 +16,7 @@ from twin.study.estimation.innovations import Normal
 from twin.study.prediction.envelope import sailed
 from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, STRUCTURE, Windows, predict
-from twin.study.prediction.own_water import LENGTHS, settled
+from twin.study.prediction.own_water import settled, shown_best
 from twin.study.reference.between import ship_of, voyages
 from twin.study.reference.path_error import PRIOR, PathError, level_of, tail
 from twin.study.reference.sailed import fed
@@ -88,9 +88,11 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
     usable = [h for h in ahead if sum(int(w.valid[w.at(h)].sum()) for w in raw) > 2]
     if not usable:
         return None
-    middle = _nearest(usable, LENGTHS * float(model.ship.scale("time")))
+    middle = shown_best(usable, model)
     rough = _second_moment(raw, middle, 1.0)
-    each = [settled(w, fed(m, w.track)[0], rough, middle) for w, (_, m, _) in zip(raw, parts, strict=True)]
+    each = [
+        settled(w, fed(m, w.track)[0], rough, middle).windows for w, (_, m, _) in zip(raw, parts, strict=True)
+    ]
     learned = [_learned(each, h) for h in usable]
     sizes = np.array([own.size for own in learned])
     means = np.array([_means(raw, h) for h in usable])
@@ -105,10 +107,6 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
         sailed(raw, middle),
         np.array(list(map(level_of, means[:, 0], simulated, [own.windows for own in learned]))),
     )
-
-
-def _nearest(ahead: Sequence[float], wanted: float) -> float:
-    return min(ahead, key=lambda h: abs(np.log(h / wanted)))
 
 
 def _parts(tracks: Sequence[Track], without: Sequence[Model]) -> list[tuple[Track, Model, slice | None]]:

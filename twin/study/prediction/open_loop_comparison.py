@@ -11,6 +11,7 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.start import waves_on
 from twin.study.prediction import locate, score
+from twin.study.prediction.comparison_water import in_own_water, in_words, stream_at_end, with_own_water
 from twin.study.prediction.expected import with_expected_errors
 from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
 from twin.study.prediction.unexplained import Energy, energy
@@ -54,11 +55,16 @@ def compare(
             f"{', '.join(s.track.name for s in sailed)}: no stretch of {as_given(min(horizons_s))} s with "
             "controls and position throughout. Give a longer voyage, or shorter horizons with --horizon."
         )
+    water = in_own_water(windows, models)
     longest = rows[-1]["horizon_s"]
     judged = energy([s.track for s in sailed], models)
     where = locate.regimes(windows, _locating(rows), ship, noise_model is not None)
-    result = _result(ship, model, sailed, rows, judged)
+    result = _result(ship, model, sailed, with_own_water(rows, water), judged)
     result |= {
+        "voyages": [
+            s.provenance() | {"duration_s": s.voyage.duration_s, "stream": stream_at_end(w)}
+            for s, w in zip(sailed, water, strict=True)
+        ],
         "data_checks": checks,
         "channels": score.channels(windows, noise_model is not None),
         "where": [{k: v for k, v in w.items() if k != "mask"} for w in where],
@@ -84,7 +90,6 @@ def _result(
             "hash": ship_hash(ship),
             "residual": model.residual is not None,
         },
-        "voyages": [s.provenance() | {"duration_s": s.voyage.duration_s} for s in sailed],
         "horizons": rows,
         "unexplained_force": judged.unexplained(),
         "learned_share": judged.learned_share(),
@@ -112,11 +117,13 @@ def verdict(result: dict[str, Any]) -> str:
     which = "" if row is rows[-1] else " (of all horizons it stands out most)"
     head = f"{as_given(row['horizon_s'])} s open-loop error{which}: {error}; {expected} ({ratio})"
     stay = "95 % of healthy voyages stay" if "limit95" in expects else "a healthy voyage usually stays"
-    usual = f"({stay} below {num(clearly, 3)})"
+    like = " in water like that of the reference voyages" if "limit95" in expects else ""
+    usual = f"({stay} below {num(clearly, 3)}{like})"
     if max(times) < clearly:
         return f"{head}: no more than expected {usual}."
     where = (
         f"; it is {num(w['error_ratio'], 2)} times larger with {w['condition']} than elsewhere"
         for w in result["where"][:1]
     )
-    return f"{head}: more than expected {usual}{''.join(where)}."
+    water = in_words(row, result["voyages"], clearly)
+    return f"{head}: more than expected {usual}{''.join(where)}.{water}"

@@ -12,7 +12,8 @@ S the covariance of a healthy ship's error, P what a stream may be before anythi
 Source: Ljung (1999) System identification, sec. 11.2 (recursive least squares with forgetting).
 """
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +28,21 @@ SLOPE_STEP = 0.02  # of U_0, for the slopes
 LENGTHS = 3.0  # ahead, over which a stream shows
 
 
-def settled(windows: Windows, model: Model, covariance: np.ndarray, horizon_s: float) -> Windows:
+@dataclass(frozen=True)
+class OwnWater:
+    """Predictions in the stream that the voyage had shown when each began."""
+
+    windows: Windows
+    stream_mps: np.ndarray  # (W, 2) that stream, toward north and east, beside the model's own
+
+
+def shown_best(horizons_s: Sequence[float], model: Model) -> float:
+    """Of some times ahead [s] the one over which a stream shows best."""
+    best_s = LENGTHS * float(model.ship.scale("time"))
+    return min(horizons_s, key=lambda h: abs(np.log(h / best_s)))
+
+
+def settled(windows: Windows, model: Model, covariance: np.ndarray, horizon_s: float) -> OwnWater:
     """The same predictions with the stream that the voyage had shown when each began. `covariance` (8, 8): of
     the error at `horizon_s`."""
     slopes = _slopes(windows, model)
@@ -45,7 +60,8 @@ def settled(windows: Windows, model: Model, covariance: np.ndarray, horizon_s: f
     stream = -np.linalg.solve(prior + np.einsum("wj,jab->wab", weight, told), (weight @ pull)[..., None])[
         ..., 0
     ]
-    return replace(windows, promised=windows.promised + np.einsum("wa,akwc->kwc", stream, slopes))
+    there = replace(windows, promised=windows.promised + np.einsum("wa,akwc->kwc", stream, slopes))
+    return OwnWater(there, stream)
 
 
 def _informed(

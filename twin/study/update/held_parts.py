@@ -9,7 +9,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.prediction.left_out import horizons
 from twin.study.prediction.openloop import Windows
-from twin.study.prediction.own_water import LENGTHS, settled
+from twin.study.prediction.own_water import settled, shown_best
 from twin.study.prediction.path_prior import errors_of
 from twin.study.reference.path_error import PathError
 from twin.study.reference.sailed import fed
@@ -51,7 +51,7 @@ def predicted(
     before, after = (_each(tracks, some, asked) for some in ([base] * len(models), models))
     if not lasting(made.names):
         return HeldParts(before, after, before, after, errors, judged_s)
-    middle = min(judged_s, key=lambda h: abs(np.log(h / (LENGTHS * float(base.ship.scale("time"))))))
+    middle = shown_best(judged_s, base)
     own = [_lasting(base, m, made.names) for m in models]
     known_before, known_after = (
         _each(tracks, some, asked, (errors.at(middle), middle)) for some in ([base] * len(models), own)
@@ -76,7 +76,7 @@ def _each(
     by_model = [ahead(tracks, m, asked) for m in models]
     if judging is not None:
         by_model = [
-            [settled(w, fed(m, w.track)[0], *judging) for w in ws]
+            [settled(w, fed(m, w.track)[0], *judging).windows for w in ws]
             for m, ws in zip(models, by_model, strict=True)
         ]
     return [_joined(list(of_track)) for of_track in zip(*by_model, strict=True)]
