@@ -21,6 +21,9 @@ from twin.api.json_keys_predicted import SIMULATE, TUBE
 COMPARE = (
     *ABOUT,
     JsonKey("verdict", "", "the sentence that an engineer reads first"),
+    JsonKey(
+        "water_sentence", "", "what the water of the day has to do with it; empty if no more than expected"
+    ),
     JsonKey("model.effects[]", "", "effects of the ship file", "it has some"),
     JsonKey("model.hash", "", "hash of the physics; a learned residual belongs to one"),
     JsonKey("model.residual", "", "whether a learned residual was added"),

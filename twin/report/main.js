@@ -5,14 +5,14 @@ function tone() {
   if (DATA.kind === "diagnose") return { missing: ["bad", "missing"], nothing_missing: ["good", "nothing missing"], unknown: ["fair", "unknown cause"], undecided: ["fair", "undecided"] }[RESULT.verdict] || ["fair", RESULT.verdict];
   if (!RESULT.horizons.length) return ["fair", "not judged"];
   const times = RESULT.horizons.map((h) => Math.max(h.position_mae_m / h.noise_floor.position_mae_m, h.heading_mae_deg / h.noise_floor.heading_mae_deg));
-  const last = times[times.length - 1], x = last < 1.5 ? Math.max(...times) : last; // as the verdict (open_loop_comparison.py)
-  return x < 1.5 ? ["good", "as expected"] : x < 4 ? ["fair", `${num(x, 2)} times the expected error`] : ["bad", `${num(x, 2)} times the expected error`];
+  const last = times[times.length - 1], x = last < limit() ? Math.max(...times) : last;
+  return x < limit() ? ["good", "as expected"] : x < 4 ? ["fair", `${num(x, 2)} times the expected error`] : ["bad", `${num(x, 2)} times the expected error`];
 }
 
 function head() {
   const [mood, word] = tone();
   const names = DATA.voyages.map((v) => v.name).join(", ");
-  return el("header", null, el("div", null, el(".eyebrow", null, `${DATA.title} · ${names}`), el("h1", null, DATA.verdict), el(`span.badge.${mood}`, null, word)), themeButton());
+  return el("header", null, el("div", null, el(".eyebrow", null, `${DATA.title} · ${names}`), el("h1", null, DATA.verdict), el(`span.badge.${mood}`, null, word), RESULT.water_sentence ? el("p", null, RESULT.water_sentence) : null), themeButton());
 }
 
 function next() {

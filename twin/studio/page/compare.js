@@ -33,22 +33,30 @@ export const label = (job) => `${job.asked.ship.replace(/\.toml$/, "")} on ${(jo
 function answers(done, r) {
   const view = timeView(), first = done[0], voyages = first.view.voyages, name = r.query.get("voyage") || voyages[0].name, k = Math.max(0, voyages.findIndex((v) => v.name === name));
   const several = voyages.length > 1 ? field("voyage", choose("voyage", voyages.map((v) => [v.name, v.name]), voyages[k].name, (v) => change({ voyage: v, from: "", to: "" }))) : null;
-  return [el("section.card", { "aria-label": "In a sentence" }, done.map((a) => el("p.big", null, done.length > 1 ? el("b", null, `${label(a.job)}: `) : null, a.result.verdict))),
+  return [el("section.card", { "aria-label": "In a sentence" }, done.map((a) => el("p.big", null, done.length > 1 ? el("b", null, `${label(a.job)}: `) : null, a.result.verdict)), done.map((a) => (a.result.water_sentence ? el("p", null, a.result.water_sentence) : null))),
     el(".two", null, horizonCard(done), whereCard(first, view, voyages[k].name)),
     el("section.card", { "aria-label": "When" }, el("h2", null, `When: ${voyages[k].name}`), several, heatOf(voyages[k], view)),
     forcesCard(first, voyages[k].name, view, r),
     seriesCard(done, voyages[k], view), foot(first.job)];
 }
 
+/** Times the expected error from which it is more than it may be (the verdict's). */
+const limitOf = (done) => Math.min(...done.map((a) => a.result.horizons.at(-1)?.noise_floor.limit95 ?? 1.5));
+
+/** The error in the stream that the voyage itself shows; of one answer alone, and where it has it. */
+function ownWater(rows, x, several) {
+  return several || !rows.every((h) => h.own_water) ? [] : [{ name: "in its own stream", x, y: rows.map((h) => h.own_water.position_mae_m), look: "c-second" }];
+}
+
 /** Error against horizon, with what is expected of this ship. */
 export function horizonCard(done) {
   const lines = done.flatMap((a, i) => {
     const rows = a.result.horizons, x = rows.map((h) => h.horizon_s), name = done.length > 1 ? label(a.job) : "model";
-    return [{ name, x, y: rows.map((h) => h.position_mae_m), look: LOOKS[i % 4], points: true }, { name: i ? "" : "expected", x, y: rows.map((h) => h.noise_floor.position_mae_m), look: i ? `${LOOKS[i % 4]} dots` : "c-expected dashed" }];
+    return [{ name, x, y: rows.map((h) => h.position_mae_m), look: LOOKS[i % 4], points: true }, { name: i ? "" : "expected", x, y: rows.map((h) => h.noise_floor.position_mae_m), look: i ? `${LOOKS[i % 4]} dots` : "c-expected dashed" }, ...ownWater(rows, x, done.length > 1)];
   });
   const heads = ["after", ["position [m]"], ["expected [m]"], ["ratio"], ["across [m]"], ["heading [deg]"], ["expected [deg]"]];
   const rows = done.flatMap((a) => a.result.horizons.map((h) => [`${asGiven(h.horizon_s)} s${done.length > 1 ? `, ${label(a.job)}` : ""}`, h.position_mae_m, h.noise_floor.position_mae_m, h.position_mae_m / h.noise_floor.position_mae_m, h.lateral_mae_m, h.heading_mae_deg, h.noise_floor.heading_mae_deg]));
-  const shown = rows.map((row) => row.map((c, i) => (i ? el("span", { class: i === 3 ? (c > 1.5 ? "bad" : c > 1.15 ? "fair" : "good") : null, title: String(c) }, num(c)) : c)));
+  const shown = rows.map((row) => row.map((c, i) => (i ? el("span", { class: i === 3 ? (c > limitOf(done) ? "bad" : c > 1.15 ? "fair" : "good") : null, title: String(c) }, num(c)) : c)));
   return card("How wrong, by how far ahead", chart("Position error, open loop", lines, { zero: "both", x: "seconds ahead", y: "m" }), saved("Errors by horizon", heads, rows, table("Mean absolute errors, open loop from the measured state", heads, shown)));
 }
 

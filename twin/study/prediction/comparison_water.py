@@ -13,6 +13,7 @@ import numpy as np
 from twin.num import num
 from twin.physics.model import Model
 from twin.study.prediction import score
+from twin.study.prediction.expected import OF
 from twin.study.prediction.own_water import OwnWater, settled, shown_best
 from twin.study.prediction.path_prior import errors_of
 from twin.study.prediction.windows import Windows
@@ -48,26 +49,20 @@ def stream_at_end(water: OwnWater) -> dict[str, float]:
     }
 
 
-def in_words(row: Mapping[str, Any], voyages: Sequence[Mapping[str, Any]], limit: float) -> str:
-    """The sentence about the water where the error of a horizon is more than `limit` times the expected
-    one."""
+def in_words(row: Mapping[str, Any], streams: Sequence[Mapping[str, float]], limit: float) -> str:
+    """The sentence about the water where the error of a horizon is more than `limit` times the expected one;
+    `streams`: what each voyage had shown at its end."""
     own = row["own_water"]
     times = [own[k] / max(row["noise_floor"][k], 1e-12) for k in KEYS]
-    streams = [v["stream"] for v in voyages]
+    fastest = max(streams, key=lambda s: s["speed_mps"])
+    speed = f"{num(fastest['speed_mps'], 2)} m/s"
     if len(streams) == 1:
-        shown, whose = _stream(streams[0]), "the voyage itself shows"
+        shown = f"the voyage itself shows ({speed} toward {fastest['toward_deg']:.0f} deg)"
     else:
-        fastest = max(s["speed_mps"] for s in streams)
-        shown, whose = f"up to {num(fastest, 2)} m/s", "each voyage itself shows"
+        shown = f"each voyage itself shows (up to {speed})"
     error = f"{num(own[KEYS[0]], 3)} m and {num(own[KEYS[1]], 2)} deg"
     ratio = f"ratio {num(times[0], 3)} and {num(times[1], 3)}"
-    told = (
-        "no more than expected: water of the day, or what acts like it"
-        if max(times) < limit
-        else "still more than expected"
-    )
-    return f" In the stream that {whose} ({shown}) it is {error} ({ratio}), {told}."
-
-
-def _stream(stream: Mapping[str, float]) -> str:
-    return f"{num(stream['speed_mps'], 2)} m/s toward {stream['toward_deg']:.0f} deg"
+    less = ", of which the reference voyages had less," if row["noise_floor"]["of"] == OF else ""
+    explained = f"no more than expected: water of the day{less} or what acts like it"
+    told = explained if max(times) < limit else "still more than expected"
+    return f"In the stream that {shown} the error is {error} ({ratio}), {told}."

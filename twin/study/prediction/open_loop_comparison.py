@@ -11,7 +11,7 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.start import waves_on
 from twin.study.prediction import locate, score
-from twin.study.prediction.comparison_water import in_own_water, in_words, stream_at_end, with_own_water
+from twin.study.prediction.comparison_water import KEYS, in_own_water, in_words, stream_at_end, with_own_water
 from twin.study.prediction.expected import with_expected_errors
 from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
 from twin.study.prediction.unexplained import Energy, energy
@@ -73,7 +73,7 @@ def compare(
         "waves": waves_on([s.track for s in sailed]),
         "jumps": jumps_on([s.track for s in sailed]),
     }
-    result["verdict"] = verdict(result)
+    result |= {"verdict": verdict(result), "water_sentence": water_sentence(result)}
     return ComparedVoyages(plain(result), tuple(sailed), tuple(models), tuple(windows))
 
 
@@ -105,25 +105,36 @@ def _locating(rows: list[dict[str, Any]]) -> float:
 def verdict(result: dict[str, Any]) -> str:
     """The sentence that an engineer reads first: of the longest horizon, or, where that one is no worse than
     it may be, of the one that stands out most."""
-    keys, rows = ("position_mae_m", "heading_mae_deg"), result["horizons"]
-    most = [max(score.in_noise(row, k) for k in keys) for row in rows]
-    clearly = float(rows[-1]["noise_floor"].get("limit95", UNUSUAL_RATIO))
-    row = rows[-1 if most[-1] >= clearly or max(most) < clearly else most.index(max(most))]
-    expects, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
+    row, clearly = _decisive(result["horizons"])
+    expects, times = row["noise_floor"], [score.in_noise(row, k) for k in KEYS]
     of = "of the sensors alone" if expects["of"] == "sensors" else "for this calibrated ship"
-    error = f"{num(row[keys[0]], 3)} m and {num(row[keys[1]], 2)} deg"
-    expected = f"expected {of}: {num(expects[keys[0]], 2)} m and {num(expects[keys[1]], 2)} deg"
+    error = f"{num(row[KEYS[0]], 3)} m and {num(row[KEYS[1]], 2)} deg"
+    expected = f"expected {of}: {num(expects[KEYS[0]], 2)} m and {num(expects[KEYS[1]], 2)} deg"
     ratio = f"ratio {num(times[0], 3)} and {num(times[1], 3)}"
-    which = "" if row is rows[-1] else " (of all horizons it stands out most)"
+    which = "" if row is result["horizons"][-1] else " (of all horizons it stands out most)"
     head = f"{as_given(row['horizon_s'])} s open-loop error{which}: {error}; {expected} ({ratio})"
     stay = "95 % of healthy voyages stay" if "limit95" in expects else "a healthy voyage usually stays"
-    like = " in water like that of the reference voyages" if "limit95" in expects else ""
-    usual = f"({stay} below {num(clearly, 3)}{like})"
+    usual = f"({stay} below {num(clearly, 3)})"
     if max(times) < clearly:
         return f"{head}: no more than expected {usual}."
     where = (
         f"; it is {num(w['error_ratio'], 2)} times larger with {w['condition']} than elsewhere"
         for w in result["where"][:1]
     )
-    water = in_words(row, result["voyages"], clearly)
-    return f"{head}: more than expected {usual}{''.join(where)}.{water}"
+    return f"{head}: more than expected {usual}{''.join(where)}."
+
+
+def water_sentence(result: dict[str, Any]) -> str:
+    """What the water of the day has to do with an error that is more than expected; empty for one that is
+    not."""
+    row, clearly = _decisive(result["horizons"])
+    if max(score.in_noise(row, k) for k in KEYS) < clearly:
+        return ""
+    return in_words(row, [v["stream"] for v in result["voyages"]], clearly)
+
+
+def _decisive(rows: list[dict[str, Any]]) -> tuple[dict[str, Any], float]:
+    """The horizon of which the verdict is, and times the expected error from which it is more than that."""
+    most = [max(score.in_noise(row, k) for k in KEYS) for row in rows]
+    clearly = float(rows[-1]["noise_floor"].get("limit95", UNUSUAL_RATIO))
+    return rows[-1 if most[-1] >= clearly or max(most) < clearly else most.index(max(most))], clearly

@@ -17,6 +17,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     return [
         *whose(result["data_checks"]),
         *textwrap.wrap(result["verdict"], 100),
+        *textwrap.wrap(result["water_sentence"], 100),
         "",
         f"{result['ship']}, {len(result['voyages'])} voyage{'s' * (len(result['voyages']) > 1)}; model: core"
         + "".join(f" + {e}" for e in result["model"]["effects"])
