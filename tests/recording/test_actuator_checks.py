@@ -53,6 +53,15 @@ def test_a_sway_that_the_yaw_contradicts_proves_no_wiring():
     assert not answer(replace(right, columns=sway), ship_of("azimuths")).unusable
 
 
+@pytest.mark.parametrize("kind", ["azimuths", "thrusters"])
+def test_how_hard_a_vessel_is_to_turn_says_nothing_of_its_wiring(kind):
+    """Test: a ship file whose moment of inertia is a third, and three times, what it was. Expected: the same
+    answer, for water that moves along makes every vessel heavier in turning than in speed."""
+    right, ship = sailed(kind, SEED), ship_of(kind)
+    as_it_is, *others = (answer(right, replace(ship, I_z=k * float(ship.I_z))) for k in (1.0, 1.0 / 3.0, 3.0))
+    assert as_it_is.ok and all(c.text == as_it_is.text for c in others)
+
+
 def test_exchanged_sides_are_told_once_by_the_check_they_belong_to():
     right = sailed("thrusters", SEED)
     plant = next(m[2] for m in MISTAKES if m[:2] == ("thrusters", "sides exchanged"))

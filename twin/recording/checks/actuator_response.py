@@ -1,14 +1,15 @@
 """Do the ship's actuators push and turn it as the ship file has them?
 
-    du = a (motion of the hull) + sum of b_i X_i/m,  b_i >= 0;  dv and dr likewise with Y_i/m and N_i/I_z
+    du = a (motion of the hull) + c_u sum of b_i X_i,  b_i, c_u >= 0;  dv and dr likewise with Y_i and N_i
 
-over windows, i each actuator ahead and each astern: how strong they are nobody needs to know here, only which
-way they push and turn it. Each has one strength in surge, sway and yaw, for it is one force: what noise makes
-of one axis, the others contradict. Asked once for the record as it is and once for every way in which it may
-be wired otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is
-believed.
+over windows, i each actuator ahead and each astern: how strong they are (b), and how easily the vessel with
+the water around it is moved along each axis (c), nobody needs to know here, only which way they push and
+turn it. Each has one strength in surge, sway and yaw, for it is one force: what noise makes of one axis,
+the others contradict. Asked once for the record as it is and once for every way in which it may be wired
+otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is believed.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +34,7 @@ LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded
 PROOF, HINT = (0.15, 0.6), (0.1, 0.75)
 RIVAL = 5.0  # and to the next that is not the same, or needs fewer mistakes
 AS_ONE = 'column = ["PORT", "STARBOARD"], factors = [0.5, 0.5].'
+ROUNDS = 8  # of strengths and of how easily the vessel moves along each axis, in turn
 ALIKE = 0.02  # share of the force by which two wirings that mean the same may differ
 
 Windows = tuple[np.ndarray, np.ndarray]  # first and last rows
@@ -201,14 +203,32 @@ def _explained(axes: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     from scipy.optimize import nnls  # heavy, and only ships with actuators are asked
 
     gain, share = np.zeros(3), np.full(3, np.nan)
-    if axes:
-        of_all = np.concatenate(list(axes.values()))
-        strengths = nnls(of_all[:, 1:], of_all[:, 0])[0]
-    for i, both in axes.items():
-        left = float(np.sum((both[:, 0] - both[:, 1:] @ strengths) ** 2))
+    pushes = _pushes(list(axes.values()), nnls) if axes else []
+    for (i, both), push in zip(axes.items(), pushes, strict=True):
+        left = float(np.sum((both[:, 0] - push) ** 2))
         share[i] = max(0.0, 1.0 - left)
         gain[i] = -0.25 * len(both) * np.log(max(left, 1e-12)) if abs(1.0 - left) > LEAST_SHARE else 0.0
     return gain, share
+
+
+def _pushes(axes: Sequence[np.ndarray], nnls: Callable[..., tuple[np.ndarray, float]]) -> list[np.ndarray]:
+    """(W,) of each axis what thrust explains of its change: an actuator has one strength in all axes,
+    and how easily the vessel moves along an axis is one for all actuators. Least squares of the one and of
+    the other in turn."""
+    ease = np.ones(len(axes))
+    change = np.concatenate([both[:, 0] for both in axes])
+    for _ in range(ROUNDS):
+        strengths = nnls(
+            np.concatenate([k * both[:, 1:] for k, both in zip(ease, axes, strict=True)]), change
+        )[0]
+        pushes = [both[:, 1:] @ strengths for both in axes]
+        ease = np.array(
+            [
+                max(0.0, float(p @ both[:, 0])) / max(float(p @ p), 1e-300)
+                for p, both in zip(pushes, axes, strict=True)
+            ]
+        )
+    return [k * p for k, p in zip(ease, pushes, strict=True)]
 
 
 def _beside(others: np.ndarray, columns: np.ndarray) -> np.ndarray:
