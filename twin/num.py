@@ -56,5 +56,6 @@ def readable(number: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def clock(seconds: float) -> str:
-    """Seconds since a voyage began as minutes and seconds, m:ss."""
-    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
+    """Seconds since a voyage began as nobody takes them for a time of day: 9 min 32 s."""
+    minutes, rest = divmod(int(seconds), 60)
+    return f"{minutes} min {rest} s" if rest else f"{minutes} min"

@@ -9,7 +9,6 @@ from twin.api.instruments import FRAMES, InstrumentCheck, instruments
 from twin.commands import arguments
 from twin.commands.next_command import after_instruments
 from twin.commands.verb_output import lines_to, progress, with_request, wrote
-from twin.errors import SettingsError
 from twin.physics.ship import Ship, load
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
@@ -18,8 +17,8 @@ from twin.recording.ship_file_writer import save
 
 EPILOG = """A circle to each side or a figure eight of ten minutes or more says most; rudder and shaft need
 not be recorded. -o: with --ship the ship file with what was seen as effects of its instruments; without, a
-map. Exit code 4: a voyage cannot be used; 5: ship file or map not valid, or nothing to write
-(docs/instruments.md)."""
+map. Exit code 3: no fault was seen, and -o wrote no file; 4: a voyage cannot be used; 5: ship file or map
+not valid, or a map can take off nothing of what was seen (docs/instruments.md)."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +38,10 @@ def run(args: argparse.Namespace) -> int:
     voyages = [read_voyage(p, by, sources_of(args.source), controls=False) for p in args.voyages]
     done, page = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress), lines_to(args)
     print("\n".join(done.text()), file=page)
-    if args.output:
+    nothing_to_write = bool(args.output) and not done.faults
+    if nothing_to_write:
+        print(f"\n{args.output} was not written: no fault of an instrument was seen.", file=page)
+    elif args.output:
         _write(args, ship, done)
         print(f"\n{wrote(args.output)}", file=page)
     if args.json:
@@ -47,14 +49,12 @@ def run(args: argparse.Namespace) -> int:
         answer = with_request(done, command, ship=args.ship, voyages=args.voyages)
         whole.write_json(answer.to_dict(), args.json)
     print("\nnext:", after_instruments(args.voyages, args.ship, args.output, bool(done.faults)), file=page)
-    return 0
+    return 3 if nothing_to_write else 0
 
 
 def _write(args: argparse.Namespace, ship: Ship | None, done: InstrumentCheck) -> None:
     if ship is None:
         return whole.write(args.output, done.as_map())
-    if not done.faults:
-        raise SettingsError(f"-o {args.output}: no fault of an instrument was seen. Leave out -o.")
     save(done.corrected(ship), args.output, args.ship)
     for left in done.not_held(ship):
         print(f"not written, as no effect holds it: {left}", file=sys.stderr)

@@ -1,6 +1,6 @@
 """What a calibration left in the ship file, and one line where it is damaged."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from math import inf
 
@@ -26,3 +26,10 @@ def positive(value: object) -> float:
     if not 0.0 < number < inf:
         raise ValueError(f"{value} is not above zero")
     return number
+
+
+def known_to_owner(ship: Ship, effect: str, number: str) -> bool:
+    """Whether the owner knows a number of an effect: the ship file has it without a standard error, as no fit
+    does."""
+    entry = ship.notes.get("effects", {}).get(effect, {}).get(number)
+    return entry is not None and not (isinstance(entry, Mapping) and "sd" in entry)

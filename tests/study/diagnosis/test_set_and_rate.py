@@ -36,7 +36,9 @@ def test_a_stream_that_changes_is_told_from_the_beginning_of_the_voyage_to_its_e
     rows = told(kvlcc2, "monday", effect=turning)
     assert np.allclose([r["speed_mps"] for r in rows], 0.2)
     assert np.allclose([r["toward_deg"] for r in rows], [0.0, 45.0, 90.0, 135.0, 180.0])
-    assert stream_in_words(rows).startswith("0.20 m/s toward 0 deg at 0:00, 0.20 m/s toward 45 deg at 7:30")
+    assert stream_in_words(rows).startswith(
+        "0.20 m/s toward 0 deg at 0 min, 0.20 m/s toward 45 deg at 7 min 30 s"
+    )
 
 
 def test_wind_is_no_stream(kvlcc2):
@@ -64,16 +66,16 @@ def test_numbers_of_a_stream_that_changes_are_not_listed_one_by_one(kvlcc2):
     path = {"horizon_s": 120.0, "error_without": 31.0, "error_floor": 30.0}
     lines = weather_lines({"weather": [cause], "path": path, "candidates": [], "resembles": []})
     for text in ("\n".join(candidate_lines(cause)), "\n".join(lines)):
-        assert "0.30 m/s toward 0 deg at 0:00" in text and "north_c1" not in text and "typically" not in text
+        assert "0.30 m/s toward 0 deg at 0 min" in text and "north_c1" not in text and "typically" not in text
     assert "31.0 m off after 120 s (30.0 m are expected)" in "\n".join(lines)
 
 
 @pytest.mark.parametrize(
     "shares, said",
     [
-        ((0.0, 0.1, 2.0, 2.1), "acts from about 20:00 on, and not before"),
-        ((2.0, 2.1, 0.0, 0.1), "acts until about 19:59, and no longer after it"),
-        ((0.0, 2.1, 2.0, 0.1), "acts from about 10:00 to 29:59, and not before or after"),
+        ((0.0, 0.1, 2.0, 2.1), "acts from about 20 min on, and not before"),
+        ((2.0, 2.1, 0.0, 0.1), "acts until about 19 min 59 s, and no longer after it"),
+        ((0.0, 2.1, 2.0, 0.1), "acts from about 10 min to 29 min 59 s, and not before or after"),
         ((2.0, 0.1, 2.0, 0.1), "comes and goes"),
         ((0.9, 1.1, 1.0, 1.0), "comes and goes"),
     ],

@@ -267,10 +267,16 @@ def test_a_map_takes_off_what_a_map_can(healthy, write_csv, tmp_path, capsys):
     assert float(line.split("offset = ")[1].split()[0]) == pytest.approx(-np.degrees(0.1), abs=0.3)
 
 
-def test_nothing_to_write_is_one_line_and_exit_code_5(healthy, write_csv, tmp_path, capsys):
-    out = tmp_path / "map.toml"
-    assert main(["instruments", str(write_csv(healthy)), "-o", str(out)]) == 5
-    assert not out.exists() and "nothing was found" in capsys.readouterr().err.splitlines()[-1]
+@pytest.mark.parametrize("ship", [[], ["--ship", "kvlcc2"]])
+def test_where_no_fault_is_seen_no_file_is_written_and_the_answer_is(
+    ship, healthy, write_csv, tmp_path, capsys
+):
+    """Expected: exit code 3, a line that says why there is no file, and the JSON that was asked for."""
+    out, answer = tmp_path / "corrected.toml", tmp_path / "answer.json"
+    asked = ["instruments", str(write_csv(healthy)), *ship, "-o", str(out), "--json", str(answer)]
+    assert main(asked) == 3
+    assert not out.exists() and json.loads(answer.read_text())["faults"] == []
+    assert f"{out} was not written: no fault of an instrument was seen." in capsys.readouterr().out
 
 
 def test_a_splines_slopes_are_those_of_its_values():

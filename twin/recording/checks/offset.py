@@ -35,10 +35,9 @@ class Offset:
             if several
             else "on one heading only: a strong stream across would do it too"
         )
-        return (
-            f"the heading is {-self.lacks:+.1f} deg off the course over ground (+- {2 * self.error:.1f}) "
-            f"where it sails straight, {why}: magnetic, or mounted askew?"
-        )
+        off = f"{-self.lacks:+.1f} deg off the course over ground (95 %: +- {2 * self.error:.1f})"
+        cause = "magnetic, mounted askew, or pushed aside by wind or thrusters?"
+        return f"the heading is {off} where it sails straight, {why}: {cause}"
 
 
 def by_course(view: VoyageView) -> Offset | None:

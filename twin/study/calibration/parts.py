@@ -7,12 +7,13 @@ pushed it, and a small ship seldom has a calm; the water of a river or a harbour
 either would bend the core, and the noise model would grow until it hides what is missing. Kept in mind alone,
 each would leave every prediction off."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from twin.physics.effect import Effect
 from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.physics.ship_notes import known_to_owner
 from twin.study.calibration.held_out import HeldOut, errors, size
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import Catalogue, Fit, fit
@@ -47,11 +48,8 @@ def with_its_weather(tracks: Sequence[Track], found: Fit, known: Catalogue, temp
 
 
 def given(ship: Ship, unknown: Unknown) -> bool:
-    """Whether it is a number of the antenna's place that the owner knows: the ship file has it without a
-    standard error, as no fit does. It stays what it is."""
-    entries = ship.notes.get("effects", {}).get(unknown.owner, {})
-    entry = entries.get(unknown.name) if unknown.owner == of_role("antenna").__name__ else None
-    return entry is not None and not (isinstance(entry, Mapping) and "sd" in entry)
+    """Whether it is a number of the antenna's place that the owner knows. It stays what it is."""
+    return unknown.owner == of_role("antenna").__name__ and known_to_owner(ship, unknown.owner, unknown.name)
 
 
 def significant(found: Fit) -> Effect | None:

@@ -29,6 +29,7 @@ from twin.study.reference.nuisance import (
     nuisance_unknowns,
     of_known_weather,
     of_no_calibration,
+    placed_by_owner,
     temper_of,
     usual_unknowns,
     with_effects,
@@ -93,7 +94,9 @@ def of_tracks(
     catalogue = {n: e for n, e in of_ship(ship).items() if not e.suspected_first or e in wanted}
     unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
-    candidates = judgeable(tracks, model, judged)
+    candidates = tuple(
+        n for n in judgeable(tracks, model, judged) if judged[n] in asked or not placed_by_owner(n, ship)
+    )
     as_before = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
     own = {
         n for n in candidates if judged[n].is_weather() and not judged[n].lasts() and judged[n] not in asked

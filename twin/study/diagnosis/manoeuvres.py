@@ -91,11 +91,13 @@ def _drives(model: Model) -> list[str]:
 MANOEUVRES: dict[str, Manoeuvre] = {
     "zigzag 10/10": Manoeuvre(
         _zigzag(10 * DEG),
-        "10 deg of helm to each side whenever the heading has changed by 10 deg, at constant power",
+        "10 deg of helm (azimuths: all alike) to each side whenever the heading has changed by 10 deg, at "
+        "constant power",
     ),
     "zigzag 20/20": Manoeuvre(
         _zigzag(20 * DEG),
-        "20 deg of helm to each side whenever the heading has changed by 20 deg, at constant power",
+        "20 deg of helm (azimuths: all alike) to each side whenever the heading has changed by 20 deg, at "
+        "constant power",
     ),
     "turning circles": Manoeuvre(
         lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0),

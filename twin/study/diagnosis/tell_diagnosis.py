@@ -1,5 +1,6 @@
 """A diagnosis in words: the sentence first, then the ranking with sizes and intervals."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from twin.num import as_given, clock, num, percent, readable
@@ -37,9 +38,8 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     lines.append(healthy_in_words(result))
     if result["next_manoeuvre"]:
         lines += ["", to_sail(result["next_manoeuvre"])]
-    lines += [
-        f"{n['effect']} cannot be judged without {' and '.join(n['lacks'])}." for n in result["not_judged"]
-    ]
+    if result["not_judged"]:
+        lines.append(f"Not judged, for want of what was not recorded: {not_judged(result['not_judged'])}.")
     lines += [
         f"{n}: no more of it than on the reference voyages; it is allowed for, and not called missing."
         for n in result["as_on_references"]
@@ -51,6 +51,14 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
             f"{', '.join(result['not_visible'])}."
         )
     return lines
+
+
+def not_judged(effects: Sequence[dict[str, Any]]) -> str:
+    """The effects that could not be judged, those that lack the same together with what they lack."""
+    by_want: dict[str, list[str]] = {}
+    for n in effects:
+        by_want.setdefault(" and ".join(n["lacks"]), []).append(n["effect"])
+    return "; ".join(f"{', '.join(names)} ({want})" for want, names in by_want.items())
 
 
 def to_sail(m: dict[str, Any]) -> str:
@@ -160,6 +168,6 @@ def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
 
 def _part(p: dict[str, Any]) -> str:
     return (
-        f"            {p['voyage']} {clock(p['start_s']):>7} to {clock(p['end_s']):>7}  "
+        f"            {p['voyage']} {clock(p['start_s']):>11} to {clock(p['end_s']):>11}  "
         f"{p['share']:>6.2f} +- {p['sd']:.2f}"
     )

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.physics.effect import Effect
+from twin.physics.effects import of_role
 from twin.physics.model import Model
-from twin.physics.ship_notes import read_from
+from twin.physics.ship import Ship
+from twin.physics.ship_notes import known_to_owner, read_from
 from twin.study.estimation.columns import (
     FORM,
     ROUGH,
@@ -35,10 +37,24 @@ NOTHING = 1e6  # information of what is none
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of
     each, beside what its file says of it. Of those that kinematics find (`Effect.kinematic`) only the ones
-    that its file has."""
+    that its file has; a place of the antenna that the owner knows is where he says."""
     present = {type(e) for e in model.effects}
-    its = (e for e in catalogue.values() if e.belongs_to != "voyage" and (not e.kinematic or e in present))
+    its = (
+        e
+        for name, e in catalogue.items()
+        if e.belongs_to != "voyage"
+        and (not e.kinematic or e in present)
+        and not placed_by_owner(name, model.ship)
+    )
     return [u for e in its for u in effect_unknowns(e, model) if u.name not in e.copies]
+
+
+def placed_by_owner(name: str, ship: Ship) -> bool:
+    """Whether it is the place of the antenna and its owner knows it: an antenna whose place was given without
+    doubt has not moved, and is no rival of a receiver that is late."""
+    numbers = ship.notes.get("effects", {}).get(name, {})
+    antenna = name == of_role("antenna").__name__
+    return antenna and bool(numbers) and all(known_to_owner(ship, name, n) for n in numbers)
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
