@@ -1,10 +1,14 @@
 """What two reference voyages establish of the next one."""
 
-import numpy as np
+from dataclasses import replace
 
-from twin.physics.effects import of_ship
+import numpy as np
+import pytest
+
+from twin.physics.effects import find, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load
+from twin.study.diagnosis.assemble import of_tracks
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.linear import linearise
 from twin.study.reference.between import BetweenVoyages, scattered
@@ -69,3 +73,22 @@ def test_ages_of_readings_are_numbers_of_their_effects():
     unknowns = usual_unknowns(Model.of(load("kvlcc2")), of_ship(load("kvlcc2")))
     owners = {u.label for u in unknowns if u.age}
     assert owners >= {"SteeringLag.delay", "SensorDelay.delay", "late.log", "late.compass", "late.gyro"}
+
+
+@pytest.mark.parametrize("told, open_to_doubt", [({}, False), ({"sd": 2.0}, True)])
+def test_an_antenna_whose_place_the_owner_knows_is_no_candidate_and_takes_nothing_of_a_lateness(
+    told, open_to_doubt, make
+):
+    """Test: its place in the ship file, without and with a standard error. Expected: without one none of its
+    numbers is asked; with one, or by name (`twin add`), they are."""
+    antenna, ship = find("AntennaOffset"), load("kvlcc2")
+    numbers = {n: {"value": 3.0, "unit": "m"} | told for n in ("ahead", "starboard")}
+    placed = replace(
+        ship.with_effects(antenna(ahead=3.0, starboard=3.0, above=0.0)),
+        notes={**ship.notes, "effects": {"AntennaOffset": numbers}},
+    )
+    sailed = [track(make(seed=1), placed)]
+    for asked, there in (((), open_to_doubt), ((antenna,), True)):
+        case = of_tracks(sailed, placed, asked=asked)
+        assert ("AntennaOffset" in case.candidates) is there
+        assert any(u.owner == "AntennaOffset" for u in case.unknowns) is there

@@ -32,6 +32,7 @@ HEALTHY_WIDTHS = (
 )
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
 NOTHING = 1e6  # information of what is none
+ON_DECK = ("ahead", "starboard")  # of an antenna; how high it stands shows where the ship rolls alone
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -50,11 +51,9 @@ def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
 
 
 def placed_by_owner(name: str, ship: Ship) -> bool:
-    """Whether it is the place of the antenna and its owner knows it: an antenna whose place was given without
-    doubt has not moved, and is no rival of a receiver that is late."""
-    numbers = ship.notes.get("effects", {}).get(name, {})
-    antenna = name == of_role("antenna").__name__
-    return antenna and bool(numbers) and all(known_to_owner(ship, name, n) for n in numbers)
+    """Whether it is the place of the antenna and its owner knows it on the deck: an antenna whose place was
+    given without doubt has not moved, and is no rival of a receiver that is late."""
+    return name == of_role("antenna").__name__ and all(known_to_owner(ship, name, n) for n in ON_DECK)
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
