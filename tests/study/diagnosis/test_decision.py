@@ -248,8 +248,7 @@ def test_every_reason_for_not_naming_has_words_of_its_own():
     said = {reason: words(c, reason) for reason in reasons}
     assert len(set(said.values())) == len(said)
     assert said["unlikely"] == (
-        "its posterior probability, 85 %, is below the 90 % needed to name it (42 %: how often such an answer "
-        "was true)"
+        "such an answer was true on 42 % of random ships, not often enough to name it"
     )
 
 
@@ -276,8 +275,8 @@ def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
     }
     said = answer.sentence({"candidates": [c], "answer": {"not_named": answer.not_named}})
     assert said == (
-        "Undecided: the readings ask for HullFouling (42 %), but its posterior probability, 85 %, is below the "
-        "90 % needed to name it (42 %: how often such an answer was true)."
+        "Undecided: the readings ask for HullFouling (42 %), but such an answer was true on 42 % of random "
+        "ships, not often enough to name it."
     )
 
 

@@ -4,7 +4,7 @@ each reason of the decision."""
 from typing import Any
 
 from twin.num import num, percent
-from twin.study.diagnosis.criteria import CERTAIN, NAMED, SIGNIFICANT, USUAL
+from twin.study.diagnosis.criteria import CERTAIN, SIGNIFICANT, USUAL
 
 Result = dict[str, Any]
 ROUGHLY = "in weather like this, whose force is known only roughly, that may be the weather's effect"
@@ -25,11 +25,10 @@ def why_not(c: Result, reason: str) -> str:
         if (c.get("on_references") or 0.0) < USUAL
         else "the instruments, held against each other without the ship, show no more of it than on the "
         "reference voyages (twin instruments tells what they show)",
-        "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
-        f"{100.0 * NAMED:.0f} % needed to name it ({percent(c['probability'])}: how often such an answer was "
-        "true)",
+        "unlikely": f"such an answer was true on {percent(c['probability'])} of random ships, not often "
+        "enough to name it",
         "not_significant": f"all its numbers together are less than {num(SIGNIFICANT, 1)} standard "
-        f"deviations from {none}, and an instrument is named from there on",
+        f"deviations from {none}, as those of sound instruments are now and then",
         "change_within_form": "what changed is no clear gain by itself, or no more than the form that the "
         "ship file has of it may be wrong by",
         "no_nearer": "with the other effects alone, or with fewer of them, the open-loop error is as small "
