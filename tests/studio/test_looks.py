@@ -143,7 +143,8 @@ def test_the_printed_page_has_no_buttons(page):
 
 
 def test_a_picture_and_its_numbers_are_saved(page):
-    """Test: the three buttons of a plot. Expected: a PNG, a whole SVG, and the numbers that are drawn."""
+    """Test: the three buttons of a plot. Expected: a PNG, a whole SVG, and the numbers of its three
+    lines."""
     show(page, PAGES["compare"])
     caught = page.value(
         """(async () => { const made = [], real = URL.createObjectURL; URL.createObjectURL = (b) => { made.push(b); return real(b); };
@@ -154,4 +155,4 @@ def test_a_picture_and_its_numbers_are_saved(page):
         return { png: made.find((b) => b.type === 'image/png')?.size, svg: await text('image/svg'), csv: await text('text/csv') }; })()"""
     )
     assert caught["png"] > 3000 and caught["svg"].startswith("<svg") and "rgb" in caught["svg"]
-    assert len(caught["csv"].splitlines()) == 1 + 6 and caught["csv"].startswith("line,seconds ahead,m")
+    assert len(caught["csv"].splitlines()) == 1 + 9 and caught["csv"].startswith("line,seconds ahead,m")

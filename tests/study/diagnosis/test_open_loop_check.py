@@ -9,7 +9,7 @@ from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.open_loop_check import (
     COMPLEXITY,
-    FORM,
+    FORM_MISSES,
     OpenLoopCheck,
     expected_errors,
     held_out_error,
@@ -26,7 +26,7 @@ from twin.study.reference.evidence import Hypothesis, posterior
 from twin.study.reference.path_error import PathError
 
 TEN = 10.0  # windows that do not overlap
-EXPECTED_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
+EXPECTED_M = float(np.hypot(8.0, FORM_MISSES * 20.0))  # where nothing is off by 20 m
 
 
 def asked(levered=None, **open_loop_error_m):

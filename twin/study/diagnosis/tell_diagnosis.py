@@ -39,7 +39,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     if result["next_manoeuvre"]:
         lines += ["", to_sail(result["next_manoeuvre"])]
     if result["not_judged"]:
-        lines.append(f"Not judged, for want of what was not recorded: {not_judged(result['not_judged'])}.")
+        lines.append(f"Not judged, for want of what was not recorded: {unrecorded(result['not_judged'])}.")
     lines += [
         f"{n}: no more of it than on the reference voyages; it is allowed for, and not called missing."
         for n in result["as_on_references"]
@@ -53,7 +53,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     return lines
 
 
-def not_judged(effects: Sequence[dict[str, Any]]) -> str:
+def unrecorded(effects: Sequence[dict[str, Any]]) -> str:
     """The effects that could not be judged, those that lack the same together with what they lack."""
     by_want: dict[str, list[str]] = {}
     for n in effects:
