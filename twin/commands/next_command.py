@@ -43,8 +43,7 @@ def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any])
     """What to sail, or to ask together, where voyages cannot tell; what to add where one may be."""
     paths, then = " ".join(voyages), result["next_manoeuvre"]
     sail = then and f"sail {then['manoeuvre']}, then twin diagnose with that voyage too"
-    of_the_day = ": what belongs to these voyages alone stays out of the ship file" * bool(result["missing"])
-    now = "" if sail else f"twin compare {paths} --ship {ship} --report compare.html{of_the_day}"
+    now = "" if sail else f"twin compare {paths} --ship {ship} --report compare.html"
     if lasting := result["answer"]["lasting"]:
         now = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
