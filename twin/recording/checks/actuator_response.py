@@ -9,7 +9,7 @@ the others contradict. Asked once for the record as it is and once for every way
 otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is believed.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -200,10 +200,8 @@ def _tried(
 def _explained(axes: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """(3,) log likelihood that thrust gains, and (3,) the share that it explains, of the motion beside thrust
     in each axis that tells anything, (W, 1 + C) of one size."""
-    from scipy.optimize import nnls  # heavy, and only ships with actuators are asked
-
     gain, share = np.zeros(3), np.full(3, np.nan)
-    pushes = _pushes(list(axes.values()), nnls) if axes else []
+    pushes = _pushes(list(axes.values())) if axes else []
     for (i, both), push in zip(axes.items(), pushes, strict=True):
         left = float(np.sum((both[:, 0] - push) ** 2))
         share[i] = max(0.0, 1.0 - left)
@@ -211,10 +209,12 @@ def _explained(axes: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     return gain, share
 
 
-def _pushes(axes: Sequence[np.ndarray], nnls: Callable[..., tuple[np.ndarray, float]]) -> list[np.ndarray]:
+def _pushes(axes: Sequence[np.ndarray]) -> list[np.ndarray]:
     """(W,) of each axis what thrust explains of its change: an actuator has one strength in all axes,
     and how easily the vessel moves along an axis is one for all actuators. Least squares of the one and of
     the other in turn."""
+    from scipy.optimize import nnls  # heavy, and only ships with actuators are asked
+
     ease = np.ones(len(axes))
     change = np.concatenate([both[:, 0] for both in axes])
     for _ in range(ROUNDS):
