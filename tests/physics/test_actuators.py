@@ -9,6 +9,7 @@ import pytest
 
 from twin.errors import SettingsError
 from twin.physics.actuators import KINDS, Actuator
+from twin.physics.actuators.kinds import OF_WAKE
 from twin.physics.effects import BUILT_IN, OF_ACTUATORS, find, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import from_table, load, text, to_table
@@ -136,11 +137,18 @@ def test_floats_arrays_and_tensors_agree_on_every_kind(kind):
 
 
 def test_the_file_of_a_ship_with_actuators_says_that_the_one_propeller_and_rudder_are_not_used():
-    lines = text(to_table(ship_with(PORT))).splitlines()
-    assert [line.split()[0] for line in lines if line.endswith("; not used: each actuator has its own")] == [
-        "D_P",
-        "A_R",
-    ]
+    """Expected: of one propeller and its rudder every number with thrusters alone; with a shaft and a rudder
+    behind it only what each of these has of its own."""
+
+    def not_used(*tables):
+        lines = text(to_table(ship_with(*tables))).splitlines()
+        return [
+            line.split()[0] for line in lines if line.endswith("; not used: the actuators have their own")
+        ]
+
+    own, shaft = ["D_P", "A_R", "K_T0", "K_T1", "x_R"], PORT | {"kind": "propeller", "diameter_m": 0.2}
+    assert set(not_used(PORT)) == {*own, *OF_WAKE}
+    assert not_used(PORT, shaft | {"name": "starboard"}) == own
 
 
 def test_every_kind_is_written_and_read_back_the_same():

@@ -12,6 +12,7 @@ from twin import whole
 from twin.num import as_given
 
 from . import ship_arrays, ship_pair
+from .actuators import KINDS
 from .actuators.file import tables as actuator_tables
 from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, ShipNumbers
 
@@ -65,7 +66,7 @@ def text(table: Mapping[str, Any]) -> str:
     follows."""
     meaning = {"particulars": PARTICULARS, "derivatives": DERIVATIVES}
     docs = {f"{section}.{f.name}": f.metadata["doc"] for section, known in meaning.items() for f in known}
-    own = ONE_SCREW if table.get("actuators") else ()
+    own = _of_actuators(table["actuators"]) if table.get("actuators") else ()
     rest = {k: v for k, v in table.items() if k not in SECTIONS}
     lists = {
         k: v
@@ -83,7 +84,7 @@ def text(table: Mapping[str, Any]) -> str:
     for section, entries in (sections | {_key(k): v for k, v in tables.items()}).items():
         lines += ["", f"[{section}]"]
         for name, entry in entries.items():
-            idle = "not used: each actuator has its own" if name in own and section == "particulars" else ""
+            idle = "not used: the actuators have their own" if name in own else ""
             words = [w for w in (docs.get(f"{section}.{name}"), in_degrees(entry), idle) if w]
             lines.append(f"{_key(name)} = {_inline(entry)}" + (f"  # {'; '.join(words)}" if words else ""))
     lists = ({"actuators": table["actuators"]} if table.get("actuators") else {}) | lists
@@ -94,6 +95,12 @@ def text(table: Mapping[str, Any]) -> str:
                 degrees = in_degrees(v)
                 lines.append(f"{_key(k)} = {_inline(v)}" + (f"  # {degrees}" if degrees else ""))
     return "\n".join(lines) + "\n"
+
+
+def _of_actuators(tables: list[Mapping[str, Any]]) -> set[str]:
+    """The ship's numbers of one propeller and rudder that no force reads where it has such actuators."""
+    read = {name for kind in KINDS.values() for name in kind.reads}
+    return {*ONE_SCREW, "K_T0", "K_T1", "x_R"} | read.difference(*(KINDS[t["kind"]].reads for t in tables))
 
 
 def in_degrees(entry: Any) -> str:

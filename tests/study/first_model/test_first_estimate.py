@@ -5,12 +5,11 @@ from math import radians
 
 import pytest
 
-from bench.boats.actuator_questions import from_sheet
 from bench.reference.hulls import HULLS
 from twin.cli import main
 from twin.physics.model import Model
 from twin.physics.ship import load
-from twin.study.first_model.first_estimate import OPTIONS, OVERRUN_DRAG, first_model
+from twin.study.first_model.first_estimate import OPTIONS, first_model
 from twin.study.prediction.trial import turning_circle, zigzag
 
 HULL = {  # length, beam, draught, and what else is known
@@ -241,33 +240,3 @@ def test_what_is_given_and_is_no_particular_is_told_as_given(tmp_path, capsys):
     )
     said = capsys.readouterr().out
     assert "compare it with the bridge's" in said and "also given" not in said
-
-
-def test_a_screw_that_stands_still_holds_against_the_motion_and_a_jet_does_not():
-    ferry, jet = from_sheet("ferry2"), from_sheet("jet")
-    assert [a.drag for a in ferry.actuators] == [OVERRUN_DRAG, OVERRUN_DRAG, 0.0]  # the third is in a tunnel
-    assert [a.drag for a in jet.actuators] == [0.0, 0.0]
-    assert "Carlton" in ferry.notes["sources"]["CAR18"] and "CAR18" not in jet.notes["sources"]
-
-
-def test_a_boat_of_thrusters_is_told_of_no_rudder(tmp_path, capsys):
-    """Expected: neither the one propeller nor the rudder among its numbers, a circle that its thrusters sail;
-    what was given of them all the same is said to be not used."""
-    sheet = tmp_path / "thrusters.toml"
-    sides = (("port", -0.4), ("starboard", 0.4))
-    sheet.write_text(
-        "".join(
-            f'[[actuators]]\nname = "{name}"\nkind = "fixed_thruster"\nchannels = ["command"]\nx_m = -0.7\n'
-            f"y_m = {y}\nahead_n = 40.0\nastern_n = 25.0\n"
-            for name, y in sides
-        )
-    )
-    boat = ["init", "Cat", "--length-pp-m", "1.8", "--beam-m", "1", "--draught-m", "0.16", "--mass-kg", "58"]
-    boat += ["--service-speed-mps", "1.5", "--actuators", str(sheet)]
-    assert main([*boat, "-o", str(tmp_path / "a.toml")]) == 0
-    said = capsys.readouterr().out
-    assert "rudder area" not in said and "propeller diameter" not in said and "35 deg" not in said
-    assert "turning circle, one side stopped" in said
-    assert main([*boat, "--rudder-area-m2", "0.02", "-o", str(tmp_path / "b.toml")]) == 0
-    told = [line for line in capsys.readouterr().out.splitlines() if "rudder area (moveable)" in line]
-    assert len(told) == 1 and told[0].endswith("not used: each actuator has its own")

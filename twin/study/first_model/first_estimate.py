@@ -1,7 +1,7 @@
 """`twin init`: a first model of my ship from what its owner knows; every estimated number says where it comes
 from."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -10,7 +10,9 @@ from twin.num import as_given, num, percent
 from twin.physics.actuators import Actuator
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
+from twin.study.first_model import first_actuators
 from twin.study.first_model import regressions as reg
+from twin.study.first_model.halving import matching
 from twin.study.first_model.modulus import modulus_form, slipstream
 from twin.study.prediction.trial import shaft_speed
 
@@ -50,12 +52,6 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
 )
 REQUIRED = ("length-pp-m", "beam-m", "draught-m")
 LEAST_FULL = 0.05  # of length x beam x draught, of two slender hulls with much water between them
-# drag of a screw that stands still, over rho D^2 u^2: a plate of half its disc; a jet has no blades in the
-# stream, and none runs along a tunnel
-OVERRUN_DRAG = 0.2  # of rho D^2 u^2 [-]
-# what carries an azimuth's propeller: a fin half a diameter long and a whole one deep, of aspect ratio 2
-LEG = 0.5 * 6.13 * 2.0 / (2.0 + 2.25)  # area times slope of the normal force, over D^2 [-]
-BLADES = ("propeller", "controllable_pitch", "fixed_thruster", "azimuth", "outboard")
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
 
@@ -67,34 +63,29 @@ def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -
         raise SettingsError("NAME is empty. Give the ship a name.")
     _check(given)
     p = _particulars(given, LEAST_FULL if actuators else 0.2)
+    p |= {k: x for k, x in first_actuators.one_screw(actuators).items() if p[k][1] != "given"}
     h = reg.HullForm(*(p[k][0] for k in ("L_pp", "B", "T", "C_b", "U_0", "x_G", "rho")))
-    d = _derivatives(reg.nearest(h), p, given)
+    of_hull = {**given, **dict.fromkeys(first_actuators.OF_SCREWS)} if actuators else given
+    d = _derivatives(reg.nearest(h), p, of_hull) | first_actuators.wake(reg.nearest(h), actuators)
     notes: dict[str, Any] = {
         "particulars": {k: {"value": v, "source": s} for k, (v, s) in p.items()},
         "derivatives": {k: {"value": v, "source": s} for k, (v, s) in d.items()},
     }
-    used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
-    actuators, begun = _begun(actuators)
+    bare = replace(_ship(name.strip(), p, d), actuators=actuators)
+    ship, begun = first_actuators.begun(bare, reg.usual_pitch(h), given)
     notes["derivatives"] |= begun
-    used |= {entry["source"] for entry in begun.values()}
+    used = {part for section in ("particulars", "derivatives") for part in _sources(notes[section])}
     notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
-    ship = replace(_ship(name.strip(), p, d), notes=notes, actuators=actuators)
+    ship = replace(ship, notes=notes)
     _in_ranges(ship)
     rough = [k for k, (_, s) in p.items() if s in ("ROUGH", "ALEX")]
     guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
-    return ship, reg.outside(h) + guessed + _two_fullnesses(given, ship)
+    idle = first_actuators.not_used(actuators, given)
+    return ship, reg.outside(h) + guessed + idle + _two_fullnesses(given, ship)
 
 
-def _begun(actuators: tuple[Actuator, ...]) -> tuple[tuple[Actuator, ...], dict[str, dict[str, Any]]]:
-    """The actuators with what builders never tell and every one of their kind has, and where it is from."""
-    out, notes = list[Actuator](), dict[str, dict[str, Any]]()
-    for a in actuators:
-        may = {"drag": (OVERRUN_DRAG, "CAR18")} if a.kind in BLADES else {}
-        may["strut"] = (LEG, "FUJ61")
-        mine = {n: x for n, x in may.items() if n in a.estimated() and not getattr(a, n)}
-        notes |= {f"{a.name}.{n}": {"value": value, "source": source} for n, (value, source) in mine.items()}
-        out.append(a.but(**{n: value for n, (value, _) in mine.items()}))
-    return tuple(out), notes
+def _sources(entries: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    return [part for entry in entries.values() for part in entry["source"].split("; ")]
 
 
 def _two_fullnesses(given: Given, ship: Ship) -> list[str]:
@@ -231,7 +222,7 @@ def _all_screws(h: reg.HullForm, pitch: float, count: float) -> Numbers:
 def _pitch_ratio(h: reg.HullForm, p: Numbers, given: Given, d: Numbers) -> float:
     """Given, or usual for a hull as full as this, or such that the shaft speed given drives it at service
     speed."""
-    usual, count = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b)), _propellers(given)
+    usual, count = given["pitch-ratio"] or reg.usual_pitch(h), _propellers(given)
     rpm = given["shaft-speed-rpm"]
     if not rpm:
         return usual
@@ -243,9 +234,9 @@ def _pitch_ratio(h: reg.HullForm, p: Numbers, given: Given, d: Numbers) -> float
 
     D = p["D_P"][0]
     if given["propeller-diameter-m"] is None and not turns(D, 1.4) < rpm < turns(D, 0.5):
-        p["D_P"] = (float(f"{_matching(lambda x: turns(x, usual), rpm, 0.2 * h.T, 1.2 * h.T):.4g}"), "RPM")
+        p["D_P"] = (float(f"{matching(lambda x: turns(x, usual), rpm, 0.2 * h.T, 1.2 * h.T):.4g}"), "RPM")
         D = p["D_P"][0]
-    pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
+    pitch = matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
             f"--shaft-speed-rpm {as_given(rpm)} cannot drive it at {num(h.U, 3)} m/s with a propeller of "
@@ -253,14 +244,6 @@ def _pitch_ratio(h: reg.HullForm, p: Numbers, given: Given, d: Numbers) -> float
             "--propellers."
         )
     return pitch
-
-
-def _matching(falling: Callable[[float], float], target: float, lo: float, hi: float) -> float:
-    """Where a falling function meets its target, by halving."""
-    for _ in range(40):
-        middle = 0.5 * (lo + hi)
-        lo, hi = (middle, hi) if falling(middle) > target else (lo, middle)
-    return 0.5 * (lo + hi)
 
 
 def _in_ranges(ship: Ship) -> None:

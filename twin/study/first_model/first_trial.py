@@ -5,6 +5,8 @@ from math import radians
 from typing import Any
 
 from twin.num import as_given, num, percent
+from twin.physics.actuators import Actuator
+from twin.physics.actuators.helm import ACROSS, actuator_orders
 from twin.physics.model import Model
 from twin.physics.particulars import ONE_SCREW
 from twin.physics.ship import PARTICULARS, Ship
@@ -45,9 +47,42 @@ def sea_trial(ship: Ship) -> dict[str, Any]:
 def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
     """What drives the ship at service speed."""
     at = f"at {num(ship.U_0, 3)} m/s ({ship.U_0 / 0.514444:.1f} kn)"
-    if ship.actuators:
+    if not ship.actuators:
+        return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
+    orders = actuator_orders(ship, 0.0, figures["power"])
+    turns = {
+        a.name: f"{60.0 * orders[f'{a.name}.rate']:.0f} rpm"
+        for a in ship.actuators
+        if "rate" in a.attributes and a.kind != ACROSS
+    }
+    if not turns:
         return f"{100.0 * figures['power']:.0f} % of the power of {len(ship.actuators)} actuators {at}"
-    return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
+    alike = len(set(turns.values())) == 1
+    told = next(iter(turns.values())) if alike else ", ".join(f"{n} {rpm}" for n, rpm in turns.items())
+    return f"{told} {at}: {bridge}"
+
+
+def _parts(ship: Ship) -> list[str]:
+    """A line for each actuator: what it is, where it stands, its strength and where that is from."""
+    lines = ["", "  actuators"] if ship.actuators else []
+    for a in ship.actuators:
+        lines.append(f"    {a.name:12} {a.kind:18} {_place(a):44} {_strength(ship, a)}".rstrip())
+    return lines
+
+
+def _place(a: Actuator) -> str:
+    ahead = f"{as_given(abs(a.x))} m {'ahead of' if a.x > 0.0 else 'astern of'} midship" if a.x else "midship"
+    return f"{ahead}, {as_given(abs(a.y))} m to {'starboard' if a.y > 0.0 else 'port'}" if a.y else ahead
+
+
+def _strength(ship: Ship, a: Actuator) -> str:
+    if "rate" in a.attributes:
+        source = ship.notes["derivatives"].get(f"{a.name}.K_T0", {}).get("source", "")
+        mark = f"  estimated: {reg.SOURCES[source].split(',')[0]}" if source else ""
+        return f"{as_given(a.D)} m, K_T0 {num(a.K_T0, 3)}, K_T1 {num(a.K_T1, 3)}{mark}"
+    if a.ahead is None or a.astern is None:
+        return "its thrust is recorded"
+    return f"{as_given(a.ahead)} N ahead, {as_given(a.astern)} N astern at rest"
 
 
 def _helm(ship: Ship) -> str:
@@ -100,8 +135,10 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
             f"  {f.name:5} {as_given(getattr(ship, f.name), 5):>12} {f.metadata['unit']:6} "
             f"{f.metadata['doc']:38} {mark}".rstrip()
         )
-    others = [f"--{o} {as_given(value)}" for o in INSIDE if (value := given[o]) is not None]
-    lines += ["", f"  also given, and in its derivatives: {', '.join(others)}"] if others else []
+    inside = [o for o in INSIDE if f"--{o} is not used" not in " ".join(warnings)]
+    others = [f"--{o} {as_given(value)}" for o in inside if (value := given[o]) is not None]
+    lines += ["", f"  also given, and in its numbers: {', '.join(others)}"] if others else []
+    lines += _parts(ship)
     bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
     unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL_C_B)
     stable = "goes straight by itself" if figures["straight_line_stability"] > 0 else unstable

@@ -13,6 +13,7 @@ Estimates = dict[str, tuple[float, str]]  # name -> value, key in SOURCES
 
 SOURCES = {
     "given": "given by the owner",
+    "PARTS": "as the ship's actuators have it",
     "KIJ90": "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168: hull beyond its "
     "linear part, a_H; by C_b B/L, T/B",
     "YM12": "Yoshimura & Masumoto (2012) MARSIM: the same, hull in surge, flow at the rudder, t_R; by C_b "
@@ -201,13 +202,22 @@ def resistance(h: HullForm) -> float:
     return 1.05 * (friction * (1.0 + form) + roughness + residual) * surface / (h.L * h.T)
 
 
+def usual_pitch(h: HullForm) -> float:
+    """Pitch over diameter of a screw that is usual for a hull as full as this."""
+    return min(1.2, max(0.6, 1.7 - 1.2 * h.C_b))
+
+
+def open_water(pitch_ratio: float) -> dict[str, float]:
+    """Thrust coefficient of one screw at rest, and its slope over the advance ratio."""
+    K_T0 = 0.43 * pitch_ratio - 0.02
+    return {"K_T0": K_T0, "K_T1": -K_T0 / (1.1 * pitch_ratio)}
+
+
 def propulsion(h: HullForm, pitch_ratio: float, screws: float = 1.0) -> Estimates:
     """Thrust of one screw; wake and thrust deduction of a ship that has one, or more."""
-    K_T0 = 0.43 * pitch_ratio - 0.02
     wake = 0.5 * h.C_b - 0.05 if screws == 1.0 else 0.55 * h.C_b - 0.2
     return {
-        "K_T0": (K_T0, "WAG"),
-        "K_T1": (-K_T0 / (1.1 * pitch_ratio), "WAG"),
+        **{name: (value, "WAG") for name, value in open_water(pitch_ratio).items()},
         "w": (max(0.0, wake), "TAY43"),
         "t": (0.2, "HAR83"),
     }
