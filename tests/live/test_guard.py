@@ -7,7 +7,7 @@ import pytest
 
 from twin.live.certificate.certificate import certify
 from twin.live.certificate.observer_tube import Tube
-from twin.live.guard import HeldControl
+from twin.live.guard import LatchedFault
 from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.manifest import hashed
 from twin.live.learning.residual import bundled, check, load
@@ -30,7 +30,7 @@ def degraded(ship, factor):
 
 
 def test_a_fault_counts_at_once_and_ends_after_it_was_gone_for_a_while():
-    held = HeldControl(10.0)
+    held = LatchedFault(10.0)
     assert held.feed("why", 0.0) == "why"
     assert held.feed("", 5.0) == "why" and held.feed("", 9.9) == "why"
     assert held.feed("", 10.0) == ""

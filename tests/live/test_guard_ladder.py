@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from twin.live.guard import BETTER, WORSE, Guard, HeldControl
+from twin.live.guard import BETTER, WORSE, Guard, LatchedFault
 from twin.live.learning.learned_force import Learned
 from twin.live.signals.measured import Measured
 
@@ -132,6 +132,16 @@ def test_a_learned_force_that_makes_it_worse_is_off_until_it_is_clearly_better(k
     assert judged(guard, 201.0).reasons == ["no learned force: none is there"]
 
 
+@pytest.mark.parametrize("lost", ({"without": ("x", "u")}, {"derived": ("psi",)}))
+def test_a_learned_force_that_is_off_stays_off_in_dead_reckoning(kvlcc2, lost):
+    """Test: it made it worse, and then position, or the compass, is lost. Expected: off, and said so."""
+    guard = Guard(kvlcc2, learning(with_learned=2.0), hold_s=HOLD_S)
+    worse = "learned force off: the learned force made it worse than the physics alone"
+    assert judged(guard, 0.0)[:3] == ("physics only", [worse], False)
+    verdict = judged(guard, 0.1, **lost)
+    assert verdict.mode == "dead reckoning" and not verdict.use_learned and verdict.reasons[1] == worse
+
+
 def test_what_the_learned_force_says_of_itself(guard):
     """Expected: what broke is held, what only has no say now is not; a force that is shrunk acts and says so."""
     for why, held in (
@@ -200,4 +210,4 @@ def test_steps_in_the_channels_unit_and_a_set_clock_are_told_for_ten_seconds_eig
 
 
 def test_nothing_is_wrong_before_anything_was():
-    assert HeldControl(1e19).feed("", 0.0) == ""
+    assert LatchedFault(1e19).feed("", 0.0) == ""

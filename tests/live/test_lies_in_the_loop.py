@@ -68,7 +68,7 @@ def sea(certificate_file):
 def test_before_any_lie_the_loop_promises_and_says_nothing_of_its_instruments(sea):
     assert sea.loop.learned.residual and sea.loop.learned.adaptation
     assert all(tick.certificate.inside for tick in sea.healthy[-300:])
-    assert not sea.loop.checks.doubt and not [text for text in sea.said if "against" in text]
+    assert not sea.loop.checks.reasons and not [text for text in sea.said if "against" in text]
 
 
 @pytest.mark.parametrize("lie", (*LIES, *OTHERS), ids=lambda lie: lie.name)
@@ -90,7 +90,7 @@ def test_I5_I6_I17_I18_I21_I22_I23_I24_on_the_services_loop_a_lie_is_said_in_tim
         tick = heard(loop, row, k)
         wrong = tick.certificate.inside and sea.wrong(loop, k)
         assert not wrong, f"a wrong promise, {t:.1f} s"
-        if loop.checks.doubt and said_s is not None and t > said_s:
+        if loop.checks.reasons and said_s is not None and t > said_s:
             assert not tick.certificate.inside and loop.learned.adaptation.frozen
         if said_s is None and any(words(reason) not in sea.said for reason in tick.reasons):
             said_s = t

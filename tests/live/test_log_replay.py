@@ -96,7 +96,7 @@ def test_an_imported_voyage_is_sailed_and_judged(sailing, tmp_path):
     summary = replay(rows_log(tmp_path / "v.mcap", sailing), settings(tmp_path, **{"residual.file": "none"}))
     assert summary.kind == "an imported voyage" and summary.ticks == 2000 and summary.rejected == 0
     assert summary.modes == {"physics only": 2000}
-    assert [f.horizon_s for f in summary.foresight] == [10.0, 60.0, 120.0]
+    assert [(f.horizon_s, f.windows) for f in summary.foresight] == [(10.0, 6), (60.0, 4), (120.0, 2)]
     assert summary.foresight[2].position_m < 5.0 and summary.foresight[2].heading_deg < 1.0
 
 

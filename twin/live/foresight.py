@@ -7,6 +7,7 @@ fit.
 """
 
 import itertools
+from collections import deque
 from copy import copy
 from dataclasses import replace
 from math import ceil, degrees, hypot
@@ -47,8 +48,9 @@ class Foresight:
     ):
         self.loop, self.horizons_s, self.every_s = loop, horizons_s, every_s
         self.step_s = min(STEP_LENGTHS * loop.ship.L_pp / loop.ship.U_0, 1.0)
-        self._starts: list[Start] = []
-        self._course: list[tuple[float, dict[str, float]]] = []  # what was measured, each step_s
+        self._starts: deque[Start] = deque()  # not judged yet
+        self._course: deque[tuple[float, dict[str, float]]] = deque()  # what was measured since the first
+        self._errors: dict[float, list[tuple[float, float]]] = {h: [] for h in horizons_s}
         self._next_start: float | None = None
         self._next_step = -1e18
 
@@ -59,6 +61,9 @@ class Foresight:
             return
         self._next_step = now_s + self.step_s
         self._course.append((now_s, dict(seen.measured.si)))
+        while self._starts and now_s > self._end_s(self._starts[0]):
+            self._judge(self._starts.popleft())
+        self._forget(self._starts[0].time_s if self._starts else now_s)
         if self._next_start is None:
             self._next_start = now_s + self.every_s
         elif now_s >= self._next_start:
@@ -76,24 +81,30 @@ class Foresight:
 
     def judged(self) -> list[Sight]:
         """The errors at each horizon that the voyage is long enough for."""
-        errors: dict[float, list[tuple[float, float]]] = {h: [] for h in self.horizons_s}
-        for start in self._starts:
-            for horizon_s, error in self._sail(start).items():
-                errors[horizon_s].append(error)
+        while self._starts:
+            self._judge(self._starts.popleft())
         return [
             Sight(h, len(found), *(total(column) / len(found) for column in zip(*found, strict=True)))
-            for h, found in errors.items()
+            for h, found in self._errors.items()
             if found
         ]
+
+    def _end_s(self, start: Start) -> float:
+        """From when on nothing that is measured tells of a start."""
+        return start.time_s + self.horizons_s[-1] + 2.0 * self.step_s
+
+    def _forget(self, before_s: float) -> None:
+        while self._course[0][0] < before_s:
+            self._course.popleft()
+
+    def _judge(self, start: Start) -> None:
+        for horizon_s, error in self._sail(start).items():
+            self._errors[horizon_s].append(error)
 
     def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
         """(position error [m], heading error [deg]) after each horizon."""
         s, found, middle, steering = replace(start.situation), {}, Middle(), start.steering
-        course = [
-            (t, si)
-            for t, si in self._course
-            if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s
-        ]
+        course = [(t, si) for t, si in self._course if start.time_s <= t <= self._end_s(start)]
         left = list(self.horizons_s)
         for (t, si), (t_next, si_next) in itertools.pairwise(course):
             for name in INPUTS:

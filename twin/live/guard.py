@@ -41,7 +41,7 @@ class Verdict(NamedTuple):
     odd: str = ""
 
 
-class HeldControl:
+class LatchedFault:
     """A fault counts at once, and until it was gone for `hold_s`."""
 
     def __init__(self, hold_s: float):
@@ -78,11 +78,11 @@ class Guard:
         self._counting = "heading", "surge", "sway", "yaw", *self.controls.values()
         self.plausible = Plausibility(ship, period_s)
         hold_s = hold_s or 3.0 * T
-        self._worse = HeldControl(hold_s)
-        self._broken = HeldControl(hold_s)
-        self._bound = HeldControl(hold_s)
-        self._clipped = HeldControl(hold_s)
-        self._doubted = HeldControl(hold_s)
+        self._worse = LatchedFault(hold_s)
+        self._broken = LatchedFault(hold_s)
+        self._bound = LatchedFault(hold_s)
+        self._clipped = LatchedFault(hold_s)
+        self._doubted = LatchedFault(hold_s)
         self._clipped_share = 0.0
         self._bad = self._outside = self._unproved = ""
         self._reckoning_since: float | None = None
@@ -108,16 +108,15 @@ class Guard:
             return Verdict(
                 STARTING, [_waiting(measured), *said], False, "no estimate yet", next(iter(odd), "")
             )
+        off = self._off(measured.now_s, next(iter(doubts), ""))
         lost = _lost(measured, self.controls)
         if lost == NO_HEADING and "psi" in measured.derived:
             self._reckoning_since = None
-            return Verdict(
-                RECKONING, [f"{lost} from the compass: gyro and course carry it", *said], True, lost
-            )
+            carried = f"{lost} from the compass: gyro and course carry it"
+            return Verdict(RECKONING, [carried, *off, *said], not off, lost, next(iter(odd), ""))
         if lost:
-            return self._reckon(measured.now_s, lost, said)._replace(odd=next(iter(odd), ""))
+            return self._reckon(measured.now_s, lost, off, said)._replace(odd=next(iter(odd), ""))
         self._reckoning_since = None
-        off = self._off(measured.now_s, next(iter(doubts), ""))
         frozen = odd[0] if odd else next((text for text in sensors if text.startswith(self._counting)), "")
         return Verdict(
             PHYSICS if off else HYBRID,
@@ -158,14 +157,13 @@ class Guard:
         ]
         return [f"learned force off: {why}" for why in reasons if why]
 
-    def _reckon(self, now_s: float, lost: str, said: list[str]) -> Verdict:
+    def _reckon(self, now_s: float, lost: str, off: list[str], said: list[str]) -> Verdict:
         if self._reckoning_since is None:
             self._reckoning_since = now_s
         for_s = now_s - self._reckoning_since
         mode = INVALID if for_s > self.reckoning_s else RECKONING
-        return Verdict(
-            mode, [f"{lost}, for {for_s:.0f} s; the model runs on alone", *said], mode == RECKONING, lost
-        )
+        alone = f"{lost}, for {for_s:.0f} s; the model runs on alone"
+        return Verdict(mode, [alone, *off, *said], mode == RECKONING and not off, lost)
 
     def _announce(self, measured: Measured) -> None:
         now_s = measured.now_s

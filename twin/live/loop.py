@@ -93,7 +93,9 @@ class Loop:
         )
         situation, physics, forces = self.dynamics.known(estimate, measured)
         self.checks.feed(CorrectedTick(measured, self.observer, situation, physics, forces, dt))
-        verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt, self._doubts())
+        verdict = self.guard.judge(
+            measured, estimate, self.sensors.reasons(), dt, self._doubts(instant.time_s)
+        )
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt, self.stabilizer.broken)
         self.learned.learn(self._nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
@@ -133,9 +135,9 @@ class Loop:
         if decoder.chart is not None and e.ready:
             decoder.chart = decoder.chart.near(si.get("x", e.x), si.get("y", e.y))
 
-    def _doubts(self) -> list[str]:
+    def _doubts(self, now_s: float) -> list[str]:
         """Which instruments contradict each other, in words: nothing is learned from them."""
-        return [*self.checks.reasons, *self.sensors.rivals.reasons]
+        return [*self.checks.reasons, *self.sensors.rivals.reasons(now_s)]
 
     def _doubt(self, measured: Measured) -> str:
         """Why the certificate may not believe what is measured; "" when it may."""
@@ -143,7 +145,7 @@ class Loop:
             return NO_HEADING
         return (
             self.learned.helm.stuck
-            or next(iter(self._doubts()), "")
+            or next(iter(self._doubts(measured.now_s)), "")
             or next(iter(self.sensors.loud()), "")
             or self.sensors.stamps.unsure(measured.now_s)
             or self.sensors.jumped(CONTROLS.values(), measured.now_s)

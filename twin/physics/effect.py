@@ -283,6 +283,7 @@ class SensorFault(Effect):
     # the number by which the compass turns speed over ground into the ship's axes: none where the receiver
     # does so by an attitude of its own
     turning: ClassVar[str] = ""
+    of_velocity: ClassVar[bool] = False  # whether a receiver's own velocity has it, and its positions not
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
@@ -293,6 +294,13 @@ class SensorFault(Effect):
         receiver turns its velocity by an attitude of its own, so that the compass does not turn it."""
         turned = {self.turning: 0.0 if attitude else value} if self.turning else {}
         return self.but(**{self.by_readings[number]: value}, **turned)
+
+    def by_compass(self) -> Self:
+        """The same fault where the compass turns speed over ground into the ship's axes."""
+        if not self.turning:
+            return self
+        (number,) = self.by_readings.values()
+        return self.but(**{self.turning: getattr(self, number)})
 
     def prompt(self) -> "tuple[Number, SensorFault]":
         """How old place and speed over ground are when they are shown [s], and the same fault were they not:

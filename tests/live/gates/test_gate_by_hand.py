@@ -263,13 +263,11 @@ def test_a_rival_that_walks_away_is_named_while_it_is_heard():
     receiver[1].say(10.0, 0.0)
     rival(receiver, 10.0, 0.1)
     (pair,) = receiver[0]._pairs.values()
-    assert receiver[0].reasons == []
+    assert receiver[0].reasons(1000.1) == []
     pair.test.alarm = True
-    assert receiver[0].reasons == ["north_m: a and b walk apart; one of the two is wrong"]
-    receiver[0]._now_s = pair.heard_s + 19.9
-    assert receiver[0].reasons
-    receiver[0]._now_s = pair.heard_s + 20.0
-    assert receiver[0].reasons == []
+    assert receiver[0].reasons(1000.1) == ["north_m: a and b walk apart; one of the two is wrong"]
+    assert receiver[0].reasons(pair.heard_s + 19.9)
+    assert receiver[0].reasons(pair.heard_s + 20.0) == []
 
 
 def test_the_scale_of_two_sources_is_that_of_the_channels_noise_ten_units_at_most():

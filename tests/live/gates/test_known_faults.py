@@ -1,7 +1,7 @@
 """What the ship file says is wrong with an instrument is taken off what it says, and nothing else."""
 
 from dataclasses import replace
-from math import pi
+from math import cos, pi, sin
 
 import pytest
 
@@ -11,6 +11,7 @@ from twin.live.signals.measured import Measured
 from twin.physics.effects.gyro_bias import GyroBias
 from twin.physics.effects.gyro_scale import GyroScale
 from twin.physics.effects.heading_bias import HeadingBias
+from twin.physics.effects.receiver_smoothing import ReceiverSmoothing
 from twin.physics.effects.speed_log_scale import SpeedLogScale
 from twin.physics.state import Rates
 
@@ -60,6 +61,19 @@ def test_faults_of_several_instruments_go_together_and_what_is_missing_or_derive
     assert set(undone(kvlcc2, *both, without=("u_r",))) == {"r"}  # the log needs its speed
     assert set(undone(kvlcc2, *both, derived=("r",))) == {"u_r", "v_r"}
     assert set(undone(kvlcc2, *both, derived=("u_r",))) == {"r", "u_r", "v_r"}
+
+
+def test_speeds_that_come_from_positions_have_what_the_compass_turned_and_nothing_of_the_receivers_velocity(
+    kvlcc2,
+):
+    """Test: speed over ground measured by a receiver with an attitude of its own, and derived from positions by
+    the compass. Expected: a compass bias turns only the second, and smoothing is only in the first."""
+    bias, smooth = HeadingBias(bias=0.05, turned=0.0), ReceiverSmoothing(time=3.0)
+    assert {"u", "v"}.isdisjoint(undone(kvlcc2, bias))
+    off = undone(kvlcc2, bias, derived=("u", "v"))
+    assert off["v"] == pytest.approx(-(E.v * cos(0.05) - E.u * sin(0.05)) + E.v)
+    assert {"u", "v"} <= set(undone(kvlcc2, smooth))
+    assert undone(kvlcc2, smooth, derived=("u", "v")) == {}
 
 
 @pytest.mark.parametrize("faults, ready", (((), True), ((GyroBias(bias=0.003),), False)))

@@ -141,6 +141,17 @@ def test_I8_without_speed_over_ground_it_is_derived_from_positions(make_bridge):
     assert abs(bridge.error(SURGE)) < 0.2 and abs(bridge.error("sway_velocity_mps")) < 0.2
 
 
+def test_I8_a_rate_that_came_from_a_compass_is_lost_with_it(make_bridge):
+    """Test: no gyro, hard over, and the compass lost in the turn, which then ends. Expected: the rate of the
+    moment in which it was lost is no measurement; the model carries the heading."""
+    turned = make_bridge(helm_deg=lambda t: 20.0 if t < 60.0 else 0.0)
+    no_gyro = lambda readings, b: [r for r in readings if r.channel != YAW]
+    turned.run(60.0, no_gyro)
+    turned.run(150.0, lambda readings, b: [r for r in no_gyro(readings, b) if r.channel != HEADING])
+    assert "r" not in turned.loop.last.measured.si
+    assert abs(turned.error(YAW)) < 0.05 and abs(turned.error(HEADING)) < 8.0
+
+
 def test_I9_without_any_sensor_the_model_runs_on_and_then_nothing_is_promised(bridge):
     """Test: everything silent. Expected: dead reckoning when the channels are stale, invalid after 60 s."""
     bridge.run(30.0)

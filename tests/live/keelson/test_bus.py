@@ -6,6 +6,7 @@ import socket
 import subprocess
 from collections.abc import Iterator
 from time import monotonic, sleep, time_ns
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -215,6 +216,24 @@ def test_N6_an_address_that_is_not_up_yet_is_waited_for() -> None:
 def test_what_zenoh_can_never_open_is_an_error_at_once() -> None:
     with pytest.raises(SettingsError, match="Missing TLS private key"):
         ZenohBus(BusSettings(listen=f"tls/127.0.0.1:{free_port()}")).__enter__()
+
+
+def test_a_session_that_dies_while_it_is_set_up_is_closed_and_opened_again(monkeypatch) -> None:
+    """Test: what is declared in a session fails twice. Expected: no exception, each session closed, the third
+    one kept."""
+    closed, sessions = [], [SimpleNamespace(close=lambda: closed.append(1)) for _ in range(3)]
+
+    def dies(session, *_):
+        if session is not sessions[-1]:
+            raise zenoh.ZError("session closed")
+        return SimpleNamespace(close=lambda: None)
+
+    monkeypatch.setattr(zenoh, "open", lambda config: sessions[len(closed)])
+    monkeypatch.setattr("twin.live.keelson.zenoh_bus.Link", dies)
+    monkeypatch.setattr("twin.live.keelson.zenoh_bus.RETRY_S", 0.05)
+    with ZenohBus(BusSettings(listen=f"tcp/127.0.0.1:{free_port()}")) as twin:
+        until(lambda: twin._link is not None)
+    assert closed == [1, 1]
 
 
 def test_N5_another_twin_of_the_same_name_is_said(pair: Pair) -> None:

@@ -142,6 +142,13 @@ def test_a_sample_that_does_not_count_widens_the_bound_by_what_it_moved(of_boat)
     assert tube.beta == pytest.approx((0.13, 0.1, 0.05))
 
 
+def test_what_drove_the_model_before_its_first_estimate_is_not_kept(make_service):
+    """Test: a boat at her berth, every instrument off. Expected: no memory of the ticks that pass."""
+    bridge = make_service("usv")
+    bridge.run(60.0, lambda readings, bridge: [])
+    assert isinstance(bridge.loop.observer, RollBack) and len(bridge.loop.observer._drives) == 1
+
+
 def test_the_boats_own_loop_promises_at_ten_ticks_a_second_and_keeps_it(make_service):
     """Test: the loop that the service builds on the bundled boat with the usual settings. Expected: it promises
     for most of a gentle run, and no tick's error is beyond what it promised."""

@@ -187,7 +187,13 @@ def test_beyond_the_references_nothing_is_promised(kvlcc2):
         {"along_60s": [0.0]},
         {"cell_60s_all": {"voyages": 3, "place": [], "heading": []}},
         {"cell_60s_all": {"voyages": 3, "place": [float("nan")], "heading": [1.0]}},
+        {"cell_60s_all": {"voyages": 3, "place": [0.0, 1.0], "heading": [1.0, 2.0]}},
+        {"cell_60s_all": {"voyages": 3, "place": [2.0, 1.0], "heading": [1.0, 2.0]}},
+        {"along_60s": [1000.0] * N},
+        {"level": 1.5},
+        {"level": float("nan")},
         {"lowest": "none"},
+        {"lowest": [9.0] * (N + 2)},
         {"horizons_s": []},
     ],
 )

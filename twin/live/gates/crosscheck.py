@@ -28,8 +28,7 @@ WAY_S, STREAM_S, TURN_S = 10.0, 10.0, 4.0  # blocks
 
 
 class CrossChecks:
-    """Fed with every tick; `reasons` are the disagreements of now, in words that stay the same, `doubt` the
-    first of them."""
+    """Fed with every tick; `reasons` are the disagreements of now, in words that stay the same."""
 
     def __init__(self, ship: Ship, period_s: float = 0.1):
         """period_s: of the loop; a hole in its ticks ends every block."""
@@ -40,11 +39,6 @@ class CrossChecks:
         # of one shaft and one rudder; what an actuator of several lacks, the others may bring
         self._lacking = () if ship.actuators else (Lacking(ship, FAST), Lacking(ship, SLOW))
         self.reasons: list[str] = []
-
-    @property
-    def doubt(self) -> str:
-        """What is known to be wrong with what the physics is asked about; "" when nothing is."""
-        return self.reasons[0] if self.reasons else ""
 
     def feed(self, now: CorrectedTick) -> None:
         """One tick."""

@@ -60,8 +60,8 @@ class Cusum:
         """One block, of which so much either way counts for nothing; whether there is an alarm."""
         off = x - self.mean
         z = copysign(max(abs(off) - allowed, 0.0), off) / self.scale
-        sure = self._count >= ENOUGH and abs(z) > NO_NOISE_SCALES
-        if self._count >= ENOUGH or sure:
+        sure = abs(z) > NO_NOISE_SCALES
+        if self._count >= ENOUGH:
             step = min(max(z, -0.5 * H), 0.5 * H)
             self._up = min(max(self._up + step - K, 0.0), H)
             self._down = min(max(self._down - step - K, 0.0), H)

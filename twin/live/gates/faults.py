@@ -26,6 +26,7 @@ class KnownFaults:
         model = Model.of(ship)
         self.ship: Ship = model.loaded
         self.faults: tuple[SensorFault, ...] = model.faults
+        self._of_positions = tuple(f.by_compass() for f in model.faults if not f.of_velocity)
 
     def undo(self, measured: Measured, e: Estimate, rates: Rates) -> Measured:
         """Takes the faults off `measured.si`; what is logged and shown as measured stays as it came."""
@@ -39,7 +40,7 @@ class KnownFaults:
             if name in si:
                 setattr(true, name, si[name])
         read = true
-        for fault in self.faults:
+        for fault in self._of_positions if "u" in measured.derived else self.faults:
             if all(need in si for need in fault.needs):
                 read = fault.read(read, self.ship)
         for name in FIELDS:

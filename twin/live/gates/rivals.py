@@ -23,20 +23,17 @@ class Rivals:
 
     def __init__(self) -> None:
         self._pairs: dict[tuple[str, str, str], RivalPair] = {}
-        self._now_s = 0.0
 
-    @property
-    def reasons(self) -> list[str]:
-        """Which sources part, in words; a rival not heard for FORGET_S is forgotten."""
+    def reasons(self, now_s: float) -> list[str]:
+        """Which sources part at `now_s` [s], in words; a rival not heard for FORGET_S is forgotten."""
         return [
             f"{name}: {used} and {other} walk apart; one of the two is wrong"
             for (name, used, other), pair in self._pairs.items()
-            if pair.test.alarm and self._now_s - pair.heard_s < FORGET_S
+            if pair.test.alarm and now_s - pair.heard_s < FORGET_S
         ]
 
     def compare(self, gate: Gate, reading: Reading, t: float, motion: float) -> None:
         """A rival's sample, measured at `t`, beside the last one that was believed, carried to that time."""
-        self._now_s = max(self._now_s, reading.received_s)
         if (
             gate.value is None
             or not gate.source
@@ -48,7 +45,9 @@ class Rivals:
         pair = self._pairs.get(key)
         if pair is None:
             if len(self._pairs) >= PAIRS:
-                self._pairs = {k: p for k, p in self._pairs.items() if self._now_s - p.heard_s < FORGET_S}
+                self._pairs = {
+                    k: p for k, p in self._pairs.items() if reading.received_s - p.heard_s < FORGET_S
+                }
             if len(self._pairs) >= PAIRS:
                 return
             pair = self._pairs[key] = RivalPair(gate)

@@ -179,7 +179,7 @@ class Sensors:
             ready = self._speed.feed(si["x"], si["y"], si["psi"], measured.time["x"])
             self._keep(ready, "x", {"u": self._speed.u, "v": self._speed.v})
         for attribute, (value, of) in self._derived.items():
-            if attribute not in si and of in si:
+            if attribute not in si and of in si and of not in measured.derived:
                 measured.derive(attribute, value, of)
         if "wind_speed" not in si and measured.has("apparent_wind_speed", "apparent_wind_from"):
             felt = si["apparent_wind_speed"], si["apparent_wind_from"]

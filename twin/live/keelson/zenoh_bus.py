@@ -36,6 +36,7 @@ class ZenohBus:
         self._link: Link | None = None
         self._closing = Event()
         self._why = ""
+        self._opened = False  # whether Zenoh ever opened: then it may again
         self._thread: Thread | None = None
         self._received = self._published = self._refused = 0
 
@@ -45,7 +46,8 @@ class ZenohBus:
 
     def __enter__(self) -> "ZenohBus":
         self._try_to_open()
-        if self._link is None and not self._client and not may_come(self._why):
+        may_open = self._opened or self._client or may_come(self._why)
+        if self._link is None and not may_open:
             raise SettingsError(self._cannot_open())
         if self._link is None:
             self._thread = Thread(target=self._keep_trying, name="bus", daemon=True)
@@ -89,17 +91,20 @@ class ZenohBus:
     def _try_to_open(self) -> None:
         import zenoh
 
+        session = None
         try:
             session = zenoh.open(self._config)
+            self._opened = True
+            self._link = Link(session, self._settings, self._subjects)
         except zenoh.ZError as failure:
             self._why = " ".join(str(failure).split(" at /")[0].split())
-            return
         except BaseException as failure:  # Zenoh is Rust: a panic in it is no Exception here
             if isinstance(failure, (KeyboardInterrupt, SystemExit)):
                 raise
             self._why = f"{type(failure).__name__}: {' '.join(str(failure).split())}"
-            return
-        self._link = Link(session, self._settings, self._subjects)
+        if session is not None and self._link is None:
+            with suppress(zenoh.ZError):
+                session.close()
 
     def _keep_trying(self) -> None:
         wait_s = RETRY_S

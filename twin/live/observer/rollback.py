@@ -110,6 +110,7 @@ class RollBack(Observer):
             self._begin(measured)
             self._nodes = deque([(now_s, e.state())])
             self._samples.clear()
+            self._drives.clear()
             self.path = Path(now_s, e.state(), [])
             return e
         self.sigma.grow(dt, abs(e.u) + abs(e.v))

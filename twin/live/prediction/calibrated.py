@@ -22,6 +22,7 @@ TARGETS = ("place", "heading")
 BEYOND = (4, 5, 6)  # of phi: waves, wind, the estimate's sigma; beyond the references nothing is promised
 WORDS = {4: "wave height", 5: "wind", 6: "uncertainty of the estimate"}
 OWN = len(NAMES) - 2  # from here on phi of place and phi of heading differ
+MOST = 50.0  # of c . phi: exp of it is no error of a ship any more
 ROOM = 0.1  # of the references' range, by which it may be left
 
 
@@ -120,9 +121,14 @@ def calibrated_of(ship: Ship) -> RegionTable | None:
 
 def _read(table: Mapping[str, Any]) -> RegionTable:
     n = len(NAMES)
-    levels = _row(table["levels"])
+    level, levels = float(table["level"]), _row(table["levels"])
     if not levels or list(levels) != sorted(levels):
         raise ValueError("levels must rise")
+    if not 0.0 < level < 1.0:
+        raise ValueError(f"level = {level:g} is no share between 0 and 1")
+    low, high = _row(table["lowest"], n + 2), _row(table["highest"], n + 2)
+    if any(lo > hi for lo, hi in zip(low, high, strict=True)):
+        raise ValueError("lowest lies above highest")
     horizons = {
         float(h): Horizon(
             tuple(_row(table[f"{axis}_{h:g}s"], n) for axis in AXES),
@@ -136,13 +142,17 @@ def _read(table: Mapping[str, Any]) -> RegionTable:
     }
     if not horizons or any("all" not in h.cells for h in horizons.values()):
         raise ValueError("a horizon without its cell `all`")
+    widest = [max(abs(lo), abs(hi)) for lo, hi in zip(low, high, strict=True)]
+    for row in (c for horizon in horizons.values() for c in horizon.coefficients):
+        if sum(abs(c) * phi for c, phi in zip(row, widest, strict=False)) > MOST:
+            raise ValueError("coefficients that no references give")
     return RegionTable(
-        float(table["level"]),
+        level,
         int(table["voyages"]),
         str(table["model"]),
         levels,
-        _row(table["lowest"], n + 2),
-        _row(table["highest"], n + 2),
+        low,
+        high,
         tuple(table["seas"]),
         horizons,
     )
@@ -152,6 +162,8 @@ def _cell(entry: Mapping[str, Any], most: int) -> Cell:
     place, heading = _row(entry["place"]), _row(entry["heading"])
     if not 0 < len(place) == len(heading) <= most:
         raise ValueError(f"a cell with {len(place)} quantiles for {most} levels")
+    if any(not row[0] > 0.0 or list(row) != sorted(row) for row in (place, heading)):
+        raise ValueError("quantiles must lie above 0 and rise")
     return Cell(int(entry["voyages"]), place, heading)
 
 

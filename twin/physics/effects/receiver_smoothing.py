@@ -19,6 +19,7 @@ class ReceiverSmoothing(SensorFault):
     does."""
 
     kinematic = True
+    of_velocity = True
     suspected_first = True
     by_readings = MappingProxyType({"smoothing": "time"})
     source = (
