@@ -295,13 +295,6 @@ class SensorFault(Effect):
         turned = {self.turning: 0.0 if attitude else value} if self.turning else {}
         return self.but(**{self.by_readings[number]: value}, **turned)
 
-    def by_compass(self) -> Self:
-        """The same fault where the compass turns speed over ground into the ship's axes."""
-        if not self.turning:
-            return self
-        (number,) = self.by_readings.values()
-        return self.but(**{self.turning: getattr(self, number)})
-
     def prompt(self) -> "tuple[Number, SensorFault]":
         """How old place and speed over ground are when they are shown [s], and the same fault were they not:
         who has the whole voyage need not undo that to the order to which `read` gives it."""

@@ -1,50 +1,23 @@
 """The tube around a prediction: judged by the instruments at their own time, of the right cell, corrected
 slowly, and no part of what the twin believes."""
 
-from dataclasses import replace
 from math import degrees, exp, hypot, pi, radians
 
 import pytest
 
-from twin.errors import SettingsError
-from twin.live.learning.residual import ship_hash
+from tests.live.prediction.tube_tables import N, with_tube
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, Region, usual_error
 from twin.live.prediction.calibrated import calibrated_of
-from twin.live.prediction.circumstances import NAMES, SEAS, Circumstances, Regressors, sea_of
+from twin.live.prediction.circumstances import SEAS, Circumstances, Regressors, sea_of
 from twin.live.prediction.coverage import coverage, entry
 from twin.live.prediction.judge import Foretold, Judge, VerifiedPrediction, along_and_across
 from twin.live.prediction.prediction_tube import GAIN, PredictionTube, inside
 from twin.live.signals.measured import Measured
 from twin.physics.ship import from_table, save, text, to_table
 
-N = len(NAMES)
 PHI = (1.0, 0.2, 0.1, 0.0, 0.3, 0.5, 0.0, 0.0)
 KNOWN = Regressors(PHI, PHI, "still", "slight")
-LEVELS = (0.8, 0.9, 0.96)
-
-
-def table(ship, **changes):
-    """A [tube] as `twin tube` writes it, with round numbers."""
-    found = {
-        "level": 0.9,
-        "voyages": 20,
-        "model": ship_hash(ship),
-        "source": "by hand",
-        "seas": ["slight", "rough"],
-        "horizons_s": [10.0, 60.0, 120.0],
-        "levels": list(LEVELS),
-        "lowest": [1.0] + [0.0] * 5 + [-5.0] * 4,
-        "highest": [1.0] + [5.0] * 5 + [3.0] * 4,
-    }
-    for h in (10, 60, 120):
-        found |= {f"{axis}_{h}s": [0.0] * N for axis in ("along", "across", "heading")}
-        found[f"cell_{h}s_all"] = {"voyages": 20, "place": [1.0, 2.0, 4.0], "heading": [1.0, 1.5, 3.0]}
-    return found | changes
-
-
-def with_tube(ship, **changes):
-    return replace(ship, notes={**ship.notes, "tube": table(ship, **changes)})
 
 
 def foretold(state=(0.0, 0.0, 0.0, 7.0, 0.0, 0.0), due_s=100.0, start_s=40.0, region=None):
@@ -178,40 +151,6 @@ def test_beyond_the_references_nothing_is_promised(kvlcc2):
     assert calibrated.beyond(KNOWN) == ""
     assert "wave height" in calibrated.beyond(KNOWN._replace(place=waves, sea="rough"))
     assert "not known" in calibrated.beyond(KNOWN._replace(sea="unknown"))
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"levels": [0.9, 0.8]},
-        {"along_60s": [0.0]},
-        {"cell_60s_all": {"voyages": 3, "place": [], "heading": []}},
-        {"cell_60s_all": {"voyages": 3, "place": [float("nan")], "heading": [1.0]}},
-        {"cell_60s_all": {"voyages": 3, "place": [0.0, 1.0], "heading": [1.0, 2.0]}},
-        {"cell_60s_all": {"voyages": 3, "place": [2.0, 1.0], "heading": [1.0, 2.0]}},
-        {"along_60s": [1000.0] * N},
-        {"level": 1.5},
-        {"level": float("nan")},
-        {"lowest": "none"},
-        {"lowest": [9.0] * (N + 2)},
-        {"horizons_s": []},
-    ],
-)
-def test_a_table_that_cannot_be_used_is_one_line(kvlcc2, changes):
-    with pytest.raises(SettingsError, match=r"\[tube\].*twin tube") as error:
-        calibrated_of(with_tube(kvlcc2, **changes))
-    assert "\n" not in str(error.value)
-
-
-def test_a_tube_is_read_from_the_file_as_it_was_written(kvlcc2, tmp_path):
-    from twin.physics.ship import load
-
-    ship = with_tube(kvlcc2)
-    save(ship, tmp_path / "ship.toml")
-    assert [p.name for p in tmp_path.iterdir()] == [
-        "ship.toml"
-    ]  # no array goes astray from what is read on board
-    assert calibrated_of(load(tmp_path / "ship.toml", arrays=False)) == calibrated_of(ship)
 
 
 def test_a_ship_file_without_a_tube_stays_as_it_is(kvlcc2):

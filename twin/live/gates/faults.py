@@ -26,7 +26,7 @@ class KnownFaults:
         model = Model.of(ship)
         self.ship: Ship = model.loaded
         self.faults: tuple[SensorFault, ...] = model.faults
-        self._of_positions = tuple(f.by_compass() for f in model.faults if not f.of_velocity)
+        self._of_positions = tuple(_by_compass(f) for f in model.faults if not f.of_velocity)
 
     def undo(self, measured: Measured, e: Estimate, rates: Rates) -> Measured:
         """Takes the faults off `measured.si`; what is logged and shown as measured stays as it came."""
@@ -48,3 +48,11 @@ class KnownFaults:
             if name in si and said != is_so and not (name in OWN and name in measured.derived):
                 si[name] -= turn(said - is_so) if name == "psi" else said - is_so
         return measured
+
+
+def _by_compass(fault: SensorFault) -> SensorFault:
+    """The same fault where the compass turns speed over ground into the ship's axes."""
+    if not fault.turning:
+        return fault
+    (number,) = fault.by_readings.values()
+    return fault.but(**{fault.turning: getattr(fault, number)})

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
 from twin.live.prediction.circumstances import NAMES, Regressors
-from twin.physics.maths import dot
+from twin.physics.maths import dot, total
 from twin.physics.ship import Ship
 
 SECTION = "tube"
@@ -22,7 +22,7 @@ TARGETS = ("place", "heading")
 BEYOND = (4, 5, 6)  # of phi: waves, wind, the estimate's sigma; beyond the references nothing is promised
 WORDS = {4: "wave height", 5: "wind", 6: "uncertainty of the estimate"}
 OWN = len(NAMES) - 2  # from here on phi of place and phi of heading differ
-MOST = 50.0  # of c . phi: exp of it is no error of a ship any more
+GREATEST_EXPONENT = 50.0  # of exp(c . phi): beyond it is no error of a ship any more
 ROOM = 0.1  # of the references' range, by which it may be left
 
 
@@ -143,9 +143,11 @@ def _read(table: Mapping[str, Any]) -> RegionTable:
     if not horizons or any("all" not in h.cells for h in horizons.values()):
         raise ValueError("a horizon without its cell `all`")
     widest = [max(abs(lo), abs(hi)) for lo, hi in zip(low, high, strict=True)]
-    for row in (c for horizon in horizons.values() for c in horizon.coefficients):
-        if sum(abs(c) * phi for c, phi in zip(row, widest, strict=False)) > MOST:
-            raise ValueError("coefficients that no references give")
+    place, heading = widest[: OWN + 2], widest[:OWN] + widest[OWN + 2 :]
+    for horizon in horizons.values():
+        for row, phi in zip(horizon.coefficients, (place, place, heading), strict=True):
+            if total(abs(c) * x for c, x in zip(row, phi, strict=True)) > GREATEST_EXPONENT:
+                raise ValueError("coefficients that no references give")
     return RegionTable(
         level,
         int(table["voyages"]),
