@@ -280,8 +280,7 @@ class SensorFault(Effect):
     belongs_to = "instrument"
     # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
     attitude: ClassVar[bool] = False
-    # the number by which the compass turns speed over ground into the ship's axes: none where the receiver
-    # does so by an attitude of its own
+    # the number by which the compass turns speed over ground (none where the receiver's own attitude does)
     turning: ClassVar[str] = ""
     of_velocity: ClassVar[bool] = False  # whether a receiver's own velocity has it, and its positions not
 
