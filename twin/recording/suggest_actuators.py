@@ -1,5 +1,6 @@
 """The entries of a proposed map for vessels with several actuators, where names say whose a column is."""
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,6 +12,11 @@ from twin.recording.columns_seen import SeenColumns
 from twin.recording.formats.actuator_guess import PREFERRED, ActuatorGuess, guess_actuator, keys_of
 
 Where = tuple[SeenColumns, str]
+ONE_LETTER = re.compile(r".+[_ .-][PSps]")
+SIDES_BY_LETTER = {"p": "port", "s": "starboard"}
+OTHER_SIDE = {"P": "S", "S": "P", "p": "s", "s": "p"}
+MOST_PITCH = 2.5  # over the diameter, of any propeller
+OF_FULL_PITCH = "of full pitch? Then factor = pitch over diameter at full pitch. CONFIRM"
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm", "engine_rate_rpm")
 
 
@@ -31,7 +37,10 @@ def actuator_columns(files: Sequence[SeenColumns]) -> dict[str, tuple[Where, Act
 
 
 def name_and_place(seen: SeenColumns, name: str, files: Sequence[SeenColumns]) -> str:
-    """What there is to read about a column: of several files also where its own lies."""
+    """What there is to read about a column: of several files also where its own lies, and of RPM_P beside
+    RPM_S the side."""
+    if side := side_of(name, seen.names):
+        return f"{name[:-1]}{side}"
     if len(files) < 2 or seen.groups.get(name):
         return seen.said(name)
     parts = seen.path.with_suffix("").parts
@@ -39,6 +48,14 @@ def name_and_place(seen: SeenColumns, name: str, files: Sequence[SeenColumns]) -
         sum(a == b for a, b in zip(parts, f.path.with_suffix("").parts, strict=False)) for f in files
     )
     return " ".join((*parts[common:], seen.labels.get(name, name)))
+
+
+def side_of(name: str, names: Sequence[str]) -> str:
+    """The side that a single letter behind a name tells where the other side's stands beside it; else
+    ""."""
+    letter = ONE_LETTER.fullmatch(name)
+    other = letter and f"{name[:-1]}{OTHER_SIDE[name[-1]]}"
+    return SIDES_BY_LETTER[name[-1].lower()] if other in names else ""
 
 
 def rank(found: ActuatorGuess) -> tuple[bool, float]:
@@ -74,6 +91,7 @@ def why_of(found: ActuatorGuess, values: np.ndarray) -> list[str]:
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     said = [f"{as_given(low, 6)} to {as_given(high, 6)}"]
     said += ["an order, not what was measured"] * (found.order and found.last not in ("pwm_us", "command"))
+    said += [OF_FULL_PITCH] * (found.last == "pitch_ratio" and float(np.nanmax(np.abs(values))) > MOST_PITCH)
     return [*said, "sign? CONFIRM"] if found.last in ("pwm_us", "command", "thrust_n") else said
 
 

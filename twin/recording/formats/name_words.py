@@ -77,6 +77,8 @@ ENGLISH: dict[str, str] = {
     "centre": "center", "middle": "center", "winkel": "angle", "vinkel": "angle", "hdgt": "hdt",
     "spd": "speed", "dir": "direction", "ang": "angle", "vel": "velocity", "velo": "velocity",
     "app": "apparent", "appar": "apparent", "lin": "linear", "pos": "position", "thr": "thruster",
+    "rud": "rudder", "bowthr": "bow thruster", "bowthruster": "bow thruster",
+    "sternthr": "stern thruster", "sternthruster": "stern thruster",
     "temps": "time", "anemo": "wind", "anemometer": "wind",
 }  # fmt: skip
 
