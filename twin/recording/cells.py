@@ -16,6 +16,12 @@ from twin.recording.table import Table
 from twin.recording.units import factor
 
 PARTS = re.compile(r"\d+(?:[.,]\d+)?")
+WORDS = re.compile(r"[A-Z]+")
+UNIT_MARKS = re.compile(  # of degrees, minutes and seconds; an S is the seconds' only behind the minutes' mark
+    r"(?<=\d)\s*(?:D(?:EG(?:REES?)?)?|SEC(?:ONDS?)?"
+    r"|M(?:IN(?:UTES?)?)?(?:\s*[\d.,]+\s*S(?:EC(?:ONDS?)?)?(?!OUTH))?)"
+)
+HEMISPHERES = {word: word[0] for word in ("N", "S", "E", "W", "NORTH", "SOUTH", "EAST", "WEST")}
 NEGATIVE = frozenset("SWsw-")
 ROUNDING_DEG = 1e-9  # of a heading: a step of Newton's that is no more was the last
 PLAIN_UNITS = (None, "ddmm", "dms", "quaternion", "quaternion_enu")
@@ -141,21 +147,24 @@ def one_angle(table: Table, key: Key, row: int, text: str) -> float:
     except ValueError:
         raise DataError(
             f"{table.path}: line {table.lines[row]}, column {key!r}: {text[:40]!r} is not degrees and "
-            "minutes (57 30.123 N)."
+            "minutes with one of N, S, E, W (57 30.123 N). Correct it."
         ) from None
 
 
 def degrees_of(text: str) -> float:
     """Degrees, minutes and seconds as text [deg]: the sign by the letter where there is one, else by the
-    mark in front; NaN of a text without digits. ValueError: minutes or seconds are 60 or more."""
+    mark in front; NaN of a text without digits. ValueError: minutes or seconds are 60 or more, or its
+    letters are not those of one hemisphere."""
     parts = [float(p.replace(",", ".")) for p in PARTS.findall(text)]
     if not parts:
         return np.nan
     if len(parts) > 3 or any(p >= 60.0 for p in parts[1:]):
         raise ValueError(text)
     size = sum(p / 60.0**k for k, p in enumerate(parts))
-    letters = set(text.upper()) & set("NSEW")
-    south = letters <= set("SW") if letters else text.lstrip().startswith("-")
+    sides = {HEMISPHERES.get(word) for word in WORDS.findall(UNIT_MARKS.sub(" ", text.upper()))}
+    if None in sides or len(sides) > 1:
+        raise ValueError(text)
+    south = sides <= {"S", "W"} if sides else text.lstrip().startswith("-")
     return -size if south else size
 
 
