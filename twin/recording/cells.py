@@ -7,10 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.errors import DataError
-from twin.live.signals.channels import BY_NAME
 from twin.recording.frames import from_ddmm
-from twin.recording.mapping import Column, Key, target
-from twin.recording.resample import continuous
+from twin.recording.mapping import Column, Key, measured_as, target
+from twin.recording.resample import continuous, wrapped
 from twin.recording.samples import spikes
 from twin.recording.table import Table
 from twin.recording.units import factor
@@ -24,6 +23,7 @@ UNIT_MARKS = re.compile(  # of degrees, minutes and seconds; an S is the seconds
 HEMISPHERES = {word: word[0] for word in ("N", "S", "E", "W", "NORTH", "SOUTH", "EAST", "WEST")}
 NEGATIVE = frozenset("SWsw-")
 ROUNDING_DEG = 1e-9  # of a heading: a step of Newton's that is no more was the last
+USUAL_WAITS = 1.5  # usual times between two samples, up to which a slow log's wait is no hole
 PLAIN_UNITS = (None, "ddmm", "dms", "quaternion", "quaternion_enu")
 
 
@@ -51,9 +51,11 @@ def there(table: Table, c: Column) -> bool:
     return all(key in table.numbers or key in table.texts for key in c.parts)
 
 
-def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) -> np.ndarray:
-    """One channel with its sign, unit, offset and direction as docs/import.md has them (not yet its "
-    "frame). (N,) in the channel's unit."""
+def converted(
+    name: str, table: Table, c: Column, time_s: np.ndarray, where: str, notes: list[str]
+) -> np.ndarray:
+    """One channel with its sign, unit, offset, direction and lateness as docs/import.md has them (not yet its
+    frame). (N,) in the channel's unit; `time_s` (N,) [s]: its rows."""
     values = raw(table, c)
     notes += [
         f"{name}: {key} is the same number in every row, while what it is added to is not: a dead sensor?"
@@ -64,9 +66,12 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
     values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)
     if c.deviation:
         values = without_deviation(values, c.deviation)
-    if c.despike and (at := spikes(values, BY_NAME[name].period if name in BY_NAME else 0.0)).size:
+    ch = measured_as(name, c)
+    if c.despike and (at := spikes(values, ch.period)).size:
         notes.append(f"{name}: {at.size} spikes blanked (first in line {table.lines[at[0]]})")
         values[at] = np.nan
+    if c.late_s:
+        values = wrapped(earlier(time_s, values, c.late_s, ch.period, ch.stale_s), ch.wraps)
     return values
 
 
@@ -189,8 +194,8 @@ def earlier(
     time_s: np.ndarray, values: np.ndarray, late_s: float, period: float, longest_s: float
 ) -> np.ndarray:
     """The same channel had its samples stood where they were true, `late_s` before their rows: lines
-    between its neighbours no more than `longest_s` apart, NaN outside; an angle (`period` > 0) without
-    jumps. `time_s` and `values` (N,), the values in their own unit."""
+    between its neighbours no more than `longest_s` apart (or USUAL_WAITS, if that is longer), NaN outside;
+    an angle (`period` > 0) without jumps. `time_s` and `values` (N,), the values in their own unit."""
     known = np.flatnonzero(np.isfinite(values) & np.isfinite(time_s))
     out = np.full(values.shape, np.nan)
     if known.size < 2:
@@ -198,6 +203,7 @@ def earlier(
     t, x = time_s[known] - late_s, continuous(values[known], period)
     here = time_s[known]
     after = np.clip(np.searchsorted(t, here), 1, t.size - 1)
+    longest_s = max(longest_s, USUAL_WAITS * float(np.median(np.diff(t))))
     good = (here >= t[0]) & (here <= t[-1]) & (t[after] - t[after - 1] <= longest_s)
     out[known] = np.where(good, np.interp(here, t, x), np.nan)
     return out

@@ -4,11 +4,12 @@ import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from twin.live.signals.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME, Channel
 
 FRAMED = ("surge_velocity_mps", "sway_velocity_mps")
 PLACES = ("latitude_deg", "longitude_deg")
 HEADING = "heading_true_north_deg"
+COURSE = "course_deg"  # what a course over ground is, whatever column it fills
 NAMES = (*BY_NAME, *PLACES)
 FRAMES = ("body", "earth", "course")
 GROUND = {  # what stands for the velocities in the ship's axes, by the frame that a map would name
@@ -99,7 +100,13 @@ class Map:
 
 def target(name: str, entry: Column) -> str:
     """The name whose unit the cell must reach: a course over ground is an angle, whatever column it fills."""
-    return "course_deg" if entry.frame == "course" and name == FRAMED[1] else name
+    return COURSE if entry.frame == "course" and name == FRAMED[1] else name
+
+
+def measured_as(name: str, entry: Column) -> Channel:
+    """The channel with the period and the age of an entry's samples: a course over ground turns as a heading
+    does, a latitude or longitude is a position."""
+    return BY_NAME[HEADING] if target(name, entry) == COURSE else BY_NAME.get(name, BY_NAME["north_m"])
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
-from twin.live.signals.channels import BY_NAME
-from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
+from twin.recording.cells import converted, number_keys, optional_keys, sum_of, text_keys, there
 from twin.recording.formats import Format
 from twin.recording.formats.binary_tables import Packed
 from twin.recording.mapping import Key, Map, TimeColumn
 from twin.recording.place import FRAMED, no_latitude, placed, scaled
-from twin.recording.resample import wrapped
 from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
     TimeAxis,
@@ -45,13 +43,10 @@ def through(
     """A table through a map: every channel in its unit, then places and velocities in their frames.
     DataError: its latitudes are beyond 90 deg."""
     columns = {
-        name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if there(table, c)
+        name: converted(name, table, c, clock.time_s, by.name, notes)
+        for name, c in by.columns.items()
+        if there(table, c)
     }
-    for name, c in by.columns.items():
-        if c.late_s and name in columns:
-            ch = BY_NAME.get(name, BY_NAME["north_m"])
-            shown = earlier(clock.time_s, columns[name], c.late_s, ch.period, ch.stale_s)
-            columns[name] = wrapped(shown, ch.wraps)
     notes = [*notes, *clock.notes]
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
     given = sorted(columns)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import DataError
-from twin.recording.cells import converted, earlier, there
+from twin.recording.cells import converted, there
 from twin.recording.formats import recognised
 from twin.recording.formats.binary_tables import Packed
 from twin.recording.formats.series_table import as_columns
@@ -135,9 +135,7 @@ def add(signals: Signals, part: Part, by: Map, notes: list[str]) -> None:
     notes += [f"{part.path.name}: {said}" for said in table.notes]
     for name, c in by.columns.items():
         if there(table, c):
-            values = converted(name, table, c, by.name, notes)
-            if c.late_s:
-                values = earlier(time_s, values, c.late_s, 0.0, np.inf)
+            values = converted(name, table, c, time_s, by.name, notes)
             series = signals.of(name, part.path.name, "")
             series.times.frombytes(np.ascontiguousarray(time_s, float).tobytes())
             series.values.frombytes(np.ascontiguousarray(values, float).tobytes())

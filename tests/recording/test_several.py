@@ -1,0 +1,33 @@
+"""Several tables as one voyage: each on its own clock, and nothing of what was found wrong is lost."""
+
+import numpy as np
+import pytest
+
+from twin.recording.map_file import parse_map
+from twin.recording.read import read_voyage
+
+
+@pytest.fixture
+def tables(columns, write_csv, tmp_path):
+    """Writes the required columns as a table of the motion and one of the controls; gives their folder."""
+
+    def write(motion=None, controls=None):
+        names = ("time_s", "rudder_angle_deg", "propeller_rate_rpm")
+        write_csv({n: x for n, x in columns.items() if n not in names[1:]} | (motion or {}), "motion.csv")
+        write_csv({n: columns[n] for n in names} | (controls or {}), "controls.csv")
+        return tmp_path
+
+    return write
+
+
+def test_a_late_heading_of_a_joined_table_passes_north_and_no_hole(tables, columns):
+    """Test: a heading that is 1 s late, passes north, and lacks half a minute. Expected: one voyage with the
+    heading of a second later, and none in the hole."""
+    heading = np.mod(355.0 + 0.5 * columns["time_s"], 360.0)
+    hole = (columns["time_s"] > 20.0) & (columns["time_s"] < 50.0)
+    folder = tables({"heading_true_north_deg": np.where(hole, np.nan, heading)})
+    v = read_voyage(folder, parse_map({"columns": {"heading_true_north_deg": {"late_s": 1.0}}}, "m.toml"))
+    shown = v["heading_true_north_deg"]
+    before = v.time_s < 18.9
+    np.testing.assert_allclose(shown[before], np.mod(heading[before] + 0.5, 360.0), atol=1e-6)
+    assert np.isnan(shown[(v.time_s > 19.1) & (v.time_s < 50.0)]).all()
