@@ -108,8 +108,8 @@ def present(columns: Mapping[str, np.ndarray], *names: str) -> bool:
 
 
 def scaled(columns: Columns, by: Map) -> Columns:
-    """Model to ship at equal Froude number; constants of a map are the ship's already. Columns (N,), each
-    in the unit in its name."""
+    """Model to ship at equal Froude number, of columns that are `placed`; constants of a map are the ship's
+    already. Columns (N,), each in the unit in its name."""
     if by.froude_scale == 1.0:
         return columns
     return {n: x if n in by.constant else x * froude(n, by.froude_scale) for n, x in columns.items()}

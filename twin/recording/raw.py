@@ -52,7 +52,8 @@ def through(
     given = sorted(columns)
     if why := no_latitude(columns):
         raise DataError(f"{path}: {why}")
-    columns, known, said = placed(clock.time_s, scaled(columns, by), by)
+    columns, known, said = placed(clock.time_s, columns, by)
+    columns = scaled(columns, by)
     slower = froude("time_s", by.froude_scale)
     step = by.time.rebuild if by.time else False
     step = step if isinstance(step, bool) else step * slower
