@@ -81,3 +81,27 @@ def test_si_is_radians_without_jumps_and_turns_per_second():
 def test_between_keeps_the_clock_and_the_right_samples():
     v = voyage(north_m=T).between(10.0, 20.0)
     assert len(v) == 100 and v.time_s[0] == pytest.approx(10.0) and v.duration_s == pytest.approx(9.9)
+
+
+def table_of(columns, **times):
+    pandas = pytest.importorskip("pandas")
+    return pandas.DataFrame({**times, **{n: x for n, x in columns.items() if n != "time_s"}})
+
+
+def test_a_table_with_moments_for_time_keeps_them_whatever_its_index(columns):
+    """Test: rows every 0.1 s with `time_utc`, once as moments and once as text, and row numbers for an index.
+    Expected: a voyage of a minute, and when it began."""
+    pandas = pytest.importorskip("pandas")
+    moments = pandas.Timestamp("2026-11-25T12:00Z") + pandas.to_timedelta(columns["time_s"], unit="s")
+    for stamps in (moments, moments.astype(str)):
+        v = Voyage.from_dataframe(table_of(columns, time_utc=stamps))
+        np.testing.assert_allclose(v.time_s, columns["time_s"], atol=1e-6)
+        assert v.meta["start_time_utc"] == "2026-11-25T12:00:00Z"
+
+
+def test_a_table_may_have_any_name_and_is_called_by_it(columns):
+    table = table_of(columns, time_s=columns["time_s"])
+    v = Voyage.from_dataframe(table, "alma/june 3")
+    assert v.name == "alma/june 3" and v.meta["source"] == "alma/june 3"
+    with pytest.raises(DataError, match=r"^alma/june 3: .*rudder_angle_deg"):
+        Voyage.from_dataframe(table.drop(columns="rudder_angle_deg"), "alma/june 3")

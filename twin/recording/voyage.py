@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twin.errors import DataError, did_you_mean
+from twin.errors import DataError, TwinError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel, of_actuators
 from twin.num import as_given, num
 from twin.recording.finish import CONTROLS, finished
+from twin.recording.headers import TIMES
 from twin.recording.holes import HOLE_S, WAITS, sailed_s, steps_on
 from twin.recording.raw import Raw
 from twin.recording.resample import continuous, resampled, wrapped
@@ -57,20 +58,24 @@ class Voyage:
 
     @classmethod
     def from_dataframe(cls, df: "pandas.DataFrame", name: str = "dataframe") -> "Voyage":
-        """A voyage of a table whose columns are channels by name (`time_s` among them, or as its index).
+        """A voyage of a table whose columns are channels by name (`time_s` or `time_utc` among them,
+        or `time_s` as its index).
 
         The same reading as of a file: what is absent is derived or said to be absent, what cannot be is
         blanked. DataError names a column that is no channel, and the nearest.
         """
-        table = df if "time_s" in df.columns else df.rename_axis("time_s").reset_index()
+        table = df if {*TIMES} & {*df.columns} else df.rename_axis("time_s").reset_index()
         for column in table.columns:
-            if column not in ("time_s", "time_utc"):
+            if column not in TIMES:
                 channel(str(column))
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / f"{name}.csv"
+            path = Path(folder) / "dataframe.csv"
             table.to_csv(path, index=False, float_format="%.17g")
-            made = cls.of(raw_of(path, None, {}))
-        return replace(made, meta={**made.meta, "source": name})
+            try:
+                made = cls.of(raw_of(path, None, {}))
+            except TwinError as error:
+                raise type(error)(str(error).replace(str(path), name)) from None
+        return replace(made, name=name, meta={**made.meta, "source": name})
 
     def to_dataframe(self) -> "pandas.DataFrame":
         """Its samples as a table: the index is `time_s` [s], a column a channel in the unit of its name."""
