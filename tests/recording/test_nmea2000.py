@@ -93,6 +93,55 @@ def test_canboats_json_is_read_in_degrees_and_in_radians(tmp_path, sailed):
         )
 
 
+def canboat_log(tmp_path, messages):
+    """The series of a file of such messages, each (group, fields), a second apart."""
+    rows = [
+        {"timestamp": stamp(float(k)), "pgn": pgn, "src": 3, "fields": fields}
+        for k, (pgn, fields) in enumerate(messages)
+    ]
+    path = tmp_path / "log.json"
+    path.write_text("\n".join(map(json.dumps, rows)) + "\n")
+    return recognised(path).series(path).series
+
+
+def test_two_rudders_and_two_engines_of_one_source_are_two_series_in_canboats_json(tmp_path):
+    starboard = "Dual Engine Starboard"
+    series = canboat_log(
+        tmp_path,
+        [
+            (127245, {"Instance": 0, "Position": 5.0}),
+            (127245, {"Instance": 1, "Position": -4.0}),
+            (127488, {"Instance": "Single Engine or Dual Engine Port", "Speed": 800}),
+            (127488, {"Instance": starboard, "Speed": 900}),
+            (127488, {"engineInstance": starboard, "engineSpeed": 910}),
+            (127250, {"Heading": 200.0, "Reference": "True"}),
+        ],
+    )
+    assert {name: list(s.values) for name, s in series.items() if s.quantity != "heading_true_north_deg"} == {
+        "127245.3.rudder_angle": [5.0],
+        "127245.3.rudder_angle_1": [-4.0],
+        "127488.3.engine_rate": [800.0],
+        "127488.3.engine_rate_dual_engine_starboard": [900.0, 910.0],
+    }
+
+
+@pytest.mark.parametrize("scale", [1.0, np.pi / 180.0], ids=["deg", "rad"])
+def test_deviation_and_the_depth_of_the_transducer_are_added_in_canboats_json(tmp_path, scale):
+    """Test: a heading that passes 360 deg only by its deviation. Expected: nobody takes radians for degrees."""
+    series = canboat_log(
+        tmp_path,
+        [
+            (127250, {"Heading": 359.0 * scale, "Deviation": 3.0 * scale, "Reference": "Magnetic"}),
+            (127250, {"Heading": 90.0 * scale, "Reference": "Magnetic"}),
+            (128267, {"Depth": 10.0, "Offset": 1.5}),
+            (128267, {"Depth": 10.0, "Offset": -2.0}),
+            (128267, {"Depth": 10.0}),
+        ],
+    )
+    assert list(series["127250.3.heading_magnetic"].values) == pytest.approx([362.0, 90.0])
+    assert list(series["128267.3.water_depth"].values) == [11.5, 10.0, 10.0]
+
+
 def test_the_bytes_of_an_actisense_gateway_are_read(tmp_path, sailed):
     out = bytearray()
     for t, pgn, source, data in frames(sailed):

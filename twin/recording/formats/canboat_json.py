@@ -3,11 +3,9 @@ radians."""
 
 import json
 from collections.abc import Iterator
-from math import pi
+from math import inf, pi
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from twin.recording.formats.lines import numbered
 from twin.recording.formats.nmea2000_pgns import DEG
@@ -37,6 +35,8 @@ OF_WIND = {
     "apparent_wind": ("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
     "true_wind": ("true_wind_speed_mps", "true_wind_direction_deg"),
 }
+FIRST = (None, 0, 252, 253, 254, 255, "Single Engine or Dual Engine Port")  # or the only one
+BESIDE = {"heading_magnetic_deg": ("deviation", -inf), "water_depth_m": ("offset", 0.0)}  # (field, at least)
 
 
 def looks(lines: list[str], start: bytes) -> bool:
@@ -47,7 +47,7 @@ def looks(lines: list[str], start: bytes) -> bool:
 def read(path: Path) -> Signals:
     """All messages of a file, angles in degrees whether it says so or not; what cannot be read is counted."""
     out, stamp, units = Signals(path, SAYS), Stamp(), ""
-    angles: set[str] = set()
+    largest: dict[str, float] = {}  # of each series of angles, as the instrument shows them
     for number, line in numbered(path):
         try:
             message = json.loads(line)
@@ -65,11 +65,12 @@ def read(path: Path) -> Signals:
             continue
         out.clock(t, number)
         for quantity, angle, value in found:
-            name = f"{pgn}.{message.get('src', '')}.{quantity.rpartition('_')[0]}"
-            out.put(name, str(message.get("src", "")), quantity, t, value, int(pgn in (129029, 127258)))
+            name = f"{pgn}.{message.get('src', '')}.{quantity.rpartition('_')[0]}{instance_of(fields)}"
+            more = beside(quantity, fields)
+            out.put(name, str(message.get("src", "")), quantity, t, value + more, int(pgn in (129029, 127258)))
             if angle:
-                angles.add(name)
-    in_degrees(out, angles, units)
+                largest[name] = max(value, largest.get(name, value))
+    in_degrees(out, largest, units)
     return out.finish()
 
 
@@ -96,17 +97,35 @@ def parts(pgn: int, fields: dict[str, Any]) -> Iterator[tuple[str, bool, float]]
         yield quantity, angle, raw * scale
 
 
-def in_degrees(out: Signals, angles: set[str], units: str) -> None:
+def one_field(fields: dict[str, Any], *names: str) -> Any:
+    """The first field of one of these names, however they are spaced and capitalised; None: there is none."""
+    told = {given.replace(" ", "").lower(): raw for given, raw in fields.items()}
+    return next((told[name] for name in names if name in told), None)
+
+
+def instance_of(fields: dict[str, Any]) -> str:
+    """What follows the name of a series of the second rudder or engine of one source; nothing of the first."""
+    told = one_field(fields, "instance", "engineinstance")
+    return "" if told in FIRST else f"_{str(told).lower().replace(' ', '_')}"
+
+
+def beside(quantity: str, fields: dict[str, Any]) -> float:
+    """What is to be added to a quantity, in its unit: to a magnetic heading the compass's deviation, to a
+    depth how far the transducer is under the surface."""
+    if quantity not in BESIDE:
+        return 0.0
+    name, least = BESIDE[quantity]
+    told = one_field(fields, name)
+    return max(float(told), least) if isinstance(told, int | float) else 0.0
+
+
+def in_degrees(out: Signals, largest: dict[str, float], units: str) -> None:
     """Angles of a log in radians become degrees: as its first line says, else when no direction exceeds 2
-    pi."""
-    full = [
-        np.frombuffer(out.series[n].values).max()
-        for n in angles
-        if "heading" in n or "course" in n or "angle" in n
-    ]
+    pi. `largest`: of each series of angles, in the log's own unit."""
+    full = [x for n, x in largest.items() if "heading" in n or "course" in n or "angle" in n]
     if units != "si" and (units == "std" or not full or max(full) > FULL_TURN_RAD):
         return
-    for name in angles:
+    for name in largest:
         s = out.series[name]
         for i, x in enumerate(s.values):
             s.values[i] = x * DEG
