@@ -102,6 +102,19 @@ def test_rounded_stamps_are_rebuilt_but_not_where_rows_are_missing(columns, writ
         ({"time": {"rebuild": -1.0}}, "rebuild"),
         ({"scale": {"froude": -3}}, "must be positive"),
         ({"constant": {"water_depth_m": "deep"}}, "must be a number"),
+        ({"columns": 3}, "[columns]: is 3; it must be a table"),
+        ({"constant": 3}, "[constant]: is 3; it must be a table"),
+        ({"columns": {"roll_deg": {"column": []}}}, "[columns] roll_deg: column names no column"),
+        ({"time": {"column": []}}, "[time]: column names no column"),
+        ({"file": {"skip_lines": -1}}, "[file] skip_lines = -1"),
+        ({"file": {"skip_after_header": -2}}, "[file] skip_after_header = -2"),
+        ({"time": {"column": ["a", "b"], "factors": [1]}}, "[time]: factors needs 2 numbers"),
+        ({"columns": {"roll_deg": {"column": "a", "factors": [1, 2]}}}, "factors needs 1 number,"),
+        ({"time": {"column": ["a", "b"], "factors": [1, 2], "unit": "iso"}}, "factors is for numbers"),
+        (
+            {"columns": {"heading_true_north_deg": {"column": [1, 2, 3, 4], "unit": "quaternion", "factors": [1]}}},
+            "factors is for numbers",
+        ),
     ],
     ids=str,
 )
@@ -133,3 +146,9 @@ def test_an_optional_column_may_be_absent_and_any_other_may_not(columns, write_c
     )
     with pytest.raises(SettingsError, match="cannot be optional"):
         parse_map({"columns": {"surge_velocity_mps": {"column": "u", "optional": True}}}, "m.toml")
+
+
+def test_the_factor_of_a_single_column_counts(columns, write_csv):
+    by = parse_map({"columns": {"rudder_angle_deg": {"factors": [-0.5]}}}, "m.toml")
+    rudder = read_voyage(write_csv(columns), by)["rudder_angle_deg"]
+    np.testing.assert_allclose(rudder, -0.5 * columns["rudder_angle_deg"], rtol=1e-7)

@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.recording.frames import from_ddmm
-from twin.recording.mapping import Column, Key, measured_as, target
+from twin.recording.mapping import QUATERNIONS, Column, Key, measured_as, target
 from twin.recording.resample import continuous, wrapped
 from twin.recording.samples import spikes
 from twin.recording.table import Table
@@ -24,7 +24,7 @@ HEMISPHERES = {word: word[0] for word in ("N", "S", "E", "W", "NORTH", "SOUTH", 
 NEGATIVE = frozenset("SWsw-")
 ROUNDING_DEG = 1e-9  # of a heading: a step of Newton's that is no more was the last
 USUAL_WAITS = 1.5  # usual times between two samples, up to which a slow log's wait is no hole
-PLAIN_UNITS = (None, "ddmm", "dms", "quaternion", "quaternion_enu")
+PLAIN_UNITS = (None, "ddmm", "dms", *QUATERNIONS)
 
 
 def number_keys(columns: Iterable[Column]) -> list[Key]:
@@ -79,14 +79,12 @@ def raw(table: Table, c: Column) -> np.ndarray:
     """The cells as one number a row, before unit, sign and offset. (N,) in the file's unit."""
     if c.is_text:
         values = degrees_of_text(table, c.parts[0])
-    elif c.unit in ("quaternion", "quaternion_enu"):
+    elif c.unit in QUATERNIONS:
         x, y, z, w = (table.numbers[key] for key in c.parts)
         yaw = np.degrees(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
         values = np.mod(90.0 - yaw if c.unit == "quaternion_enu" else yaw, 360.0)
-    elif len(c.parts) > 1:
-        values = sum_of(in_one_row([table.numbers[key] for key in c.parts]), c.factors)
     else:
-        values = table.numbers[c.parts[0]]
+        values = sum_of(in_one_row([table.numbers[key] for key in c.parts]), c.factors)
     values = from_ddmm(values) if c.unit == "ddmm" else values
     if c.hemisphere and c.hemisphere in table.texts:
         south = np.array([text[:1] in NEGATIVE for text in table.texts[c.hemisphere]])
@@ -96,7 +94,7 @@ def raw(table: Table, c: Column) -> np.ndarray:
 
 def _still(table: Table, c: Column) -> list[Key]:
     """The columns of a sum that never change where another one does."""
-    if c.is_text or len(c.parts) < 2 or c.unit in ("quaternion", "quaternion_enu"):
+    if not c.is_sum or len(c.parts) < 2:
         return []
     told = {key: x[np.isfinite(x)] for key in c.parts for x in (table.numbers[key],)}
     still = [key for key, x in told.items() if x.size and np.all(x == x[0])]

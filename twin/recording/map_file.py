@@ -18,6 +18,7 @@ from twin.recording.mapping import (
     HEADING,
     NAMES,
     PLACES,
+    QUATERNIONS,
     SEPARATORS,
     Column,
     Layout,
@@ -80,9 +81,10 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     meant."""
     known(data, ("description", "file", "time", "columns", "constant", "scale"), where)
     scale = known(data.get("scale", {}), ("froude",), f"{where}: [scale]").get("froude", 1.0)
-    entries = in_frames(data.get("columns", {}), where)
+    entries = in_frames(a_table(data.get("columns", {}), f"{where}: [columns]"), where)
     columns = {name: column(name, entry, where) for name, entry in entries.items()}
-    constant = {n: number(x, f"{where}: [constant] {n}") for n, x in data.get("constant", {}).items()}
+    given = a_table(data.get("constant", {}), f"{where}: [constant]")
+    constant = {n: number(x, f"{where}: [constant] {n}") for n, x in given.items()}
     for name in constant:
         channel_name(name, where)
     frames_agree(columns, where)
@@ -90,6 +92,9 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     layout: Layout = build(Layout, data.get("file", {}), f"{where}: [file]")
     one_of(layout.separator, (None, *SEPARATORS), f"{where}: [file] separator")
     one_of(layout.decimal, (None, ".", ","), f"{where}: [file] decimal")
+    for key, lines in (("skip_lines", layout.skip_lines), ("skip_after_header", layout.skip_after_header)):
+        if lines < 0:
+            raise SettingsError(f"{where}: [file] {key} = {lines} must be a number of lines, 0 or more.")
     if len(layout.long) not in (0, 2):
         raise SettingsError(
             f"{where}: [file] long names two columns: that of the names and that of the values."
@@ -148,21 +153,31 @@ def column(name: str, entry: Any, where: str) -> Column:
 
 def special_units(name: str) -> tuple[str, ...]:
     """Ways of writing a channel that are no factor."""
-    return ("ddmm", "dms") if name in PLACES else ("quaternion", "quaternion_enu") if name == HEADING else ()
+    return ("ddmm", "dms") if name in PLACES else QUATERNIONS if name == HEADING else ()
 
 
 def several_agree(out: Column, where: str) -> None:
     """How many columns there are must fit what is made of them. SettingsError: they do not."""
+    factors_agree(out, where)
     n = len(out.parts)
-    if out.unit in ("quaternion", "quaternion_enu"):
-        if n != 4:
-            raise SettingsError(f"{where}: a quaternion needs column = [X, Y, Z, W], four of them.")
-    elif n > 1 and len(out.factors) not in (0, n):
-        raise SettingsError(f"{where}: factors needs {n} numbers, one for each column.")
+    if out.unit in QUATERNIONS and n != 4:
+        raise SettingsError(f"{where}: a quaternion needs column = [X, Y, Z, W], four of them.")
     if n > 1 and out.is_text:
         raise SettingsError(f"{where}: degrees and minutes as text stand in one column.")
     if len(out.deviation) > 5:
         raise SettingsError(f"{where}: deviation has at most five coefficients, A to E in deg.")
+
+
+def factors_agree(out: Column | TimeColumn, where: str) -> None:
+    """There is a column, and where columns are added up a factor for each or none. SettingsError: it is not
+    so."""
+    n = len(out.parts)
+    if not n:
+        raise SettingsError(f"{where}: column names no column. Name one, or remove the entry.")
+    if out.factors and not out.is_sum:
+        raise SettingsError(f"{where}: factors is for numbers that are added up. Remove it.")
+    if len(out.factors) not in (0, n):
+        raise SettingsError(f"{where}: factors needs {n} number{'s' * (n > 1)}, one for each column.")
 
 
 def frames_agree(columns: Mapping[str, Column], where: str) -> None:
@@ -188,9 +203,10 @@ def places_agree(columns: Mapping[str, Column], constant: Mapping[str, float], w
 
 
 def time_column(entry: Any, where: str) -> TimeColumn:
-    """The entry `[time]`. SettingsError: its step is not positive."""
+    """The entry `[time]`. SettingsError: its step is not positive, or its factors do not fit its columns."""
     out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
     one_of(out.unit, (*UNITS["s"], "iso", "excel"), f"{where}: [time] unit")
+    factors_agree(out, f"{where}: [time]")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
         raise SettingsError(
             f"{where}: [time] rebuild = {as_given(out.rebuild)} must be true, false or a step in seconds."
@@ -218,12 +234,17 @@ def as_tuple(key: str, values: list[Any], where: str) -> tuple[Any, ...]:
 
 def known(table: Any, names: Any, where: str) -> Mapping[str, Any]:
     """The table, when it has no other keys than `names`. SettingsError: it has, or is no table."""
-    if not isinstance(table, Mapping):
-        raise SettingsError(f"{where}: is {table!r}; it must be a table.")
-    for name in table:
+    for name in a_table(table, where):
         if name not in names:
             raise SettingsError(f"{where}: nothing is called {name!r} here.{did_you_mean(name, names)}")
-    return table
+    return a_table(table, where)
+
+
+def a_table(value: Any, where: str) -> Mapping[str, Any]:
+    """The value as a table. SettingsError: it is none."""
+    if not isinstance(value, Mapping):
+        raise SettingsError(f"{where}: is {value!r}; it must be a table.")
+    return value
 
 
 def one_of(value: Any, allowed: tuple[Any, ...], where: str) -> None:

@@ -16,6 +16,7 @@ GROUND = {  # what stands for the velocities in the ship's axes, by the frame th
     "course": ("speed_over_ground_mps", "course_over_ground_deg"),
     "earth": ("velocity_north_mps", "velocity_east_mps"),
 }
+QUATERNIONS = ("quaternion", "quaternion_enu")  # units of a heading in four columns
 SEPARATORS = {"tab": "\t", "whitespace": " ", ",": ",", ";": ";", "\t": "\t", " ": " ", "|": "|"}
 Key = str | int  # a column by its name, or by its number from 1
 
@@ -48,9 +49,19 @@ class TimeColumn:
     factors: tuple[float, ...] = ()
 
     @property
+    def parts(self) -> tuple[Key, ...]:
+        """Every column that holds a part of the stamps."""
+        return self.column if isinstance(self.column, tuple) else (self.column,)
+
+    @property
     def is_text(self) -> bool:
         """Whether its stamps are text."""
         return self.unit == "iso" or bool(self.format)
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether its columns are numbers that are added up."""
+        return not self.is_text
 
 
 @dataclass(frozen=True)
@@ -83,6 +94,11 @@ class Column:
     def is_text(self) -> bool:
         """Whether its cells are degrees and minutes as text."""
         return self.unit == "dms"
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether its columns are numbers that are added up."""
+        return self.unit not in ("dms", *QUATERNIONS)
 
 
 @dataclass(frozen=True)

@@ -93,8 +93,7 @@ def opened_table(kind: Format, path: Path) -> Packed:
 
 def stamps_of(by: Map) -> tuple[Key, ...]:
     """The columns of a map's time."""
-    column = (by.time or TimeColumn()).column
-    return column if isinstance(column, tuple) else (column,)
+    return (by.time or TimeColumn()).parts
 
 
 def table_of(path: Path, by: Map, packed: Packed | None) -> Table:
