@@ -112,7 +112,11 @@ def test_rounded_stamps_are_rebuilt_but_not_where_rows_are_missing(columns, writ
         ({"columns": {"roll_deg": {"column": "a", "factors": [1, 2]}}}, "factors needs 1 number,"),
         ({"time": {"column": ["a", "b"], "factors": [1, 2], "unit": "iso"}}, "factors is for numbers"),
         (
-            {"columns": {"heading_true_north_deg": {"column": [1, 2, 3, 4], "unit": "quaternion", "factors": [1]}}},
+            {
+                "columns": {
+                    "heading_true_north_deg": {"column": [1, 2, 3, 4], "unit": "quaternion", "factors": [1]}
+                }
+            },
             "factors is for numbers",
         ),
     ],

@@ -1,4 +1,7 @@
-"""A table through a map: a model's file becomes the ship's, whatever its position and velocity are written in."""
+"""A table through a map: its clock from columns of any kind; a model's file becomes the ship's, whatever its
+position and velocity are written in."""
+
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
@@ -34,3 +37,47 @@ def test_a_model_with_a_receiver_and_a_course_over_ground_becomes_a_ship(sailed,
     for name in ("surge_velocity_mps", "sway_velocity_mps"):
         np.testing.assert_allclose(ship[name], 5.0 * model[name], rtol=1e-9)
     assert ship["sway_velocity_mps"][0] == pytest.approx(5.0 * 6.0 * np.sin(np.radians(10.0)))
+
+
+@pytest.fixture
+def parquet(columns, tmp_path):
+    """Writes the required columns as Parquet, with `day` and `clock` in place of the time; gives its path."""
+
+    def write(day, clock):
+        pa, kept = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+        motion = {n: pa.array(x) for n, x in columns.items() if n != "time_s"}
+        kept.write_table(
+            pa.table({"day": pa.array(day), "clock": pa.array(clock)} | motion), tmp_path / "v.parquet"
+        )
+        return tmp_path / "v.parquet"
+
+    return write
+
+
+START = datetime(2026, 11, 25, 23, 59, 30, tzinfo=UTC)
+
+
+@pytest.mark.parametrize(
+    ("time", "clock"),
+    [
+        ({"format": "%d.%m.%Y %H:%M:%S.%f"}, "%H:%M:%S.%f"),
+        ({"format": "%m/%d/%y %I:%M:%S.%f%p"}, "%I:%M:%S.%f%p"),
+        ({"unit": "iso"}, "%H:%M:%S.%f"),
+    ],
+)
+def test_a_moment_beside_a_time_of_day_as_text_is_its_day(parquet, columns, time, clock):
+    """Test: a day that is kept as a moment, and the time of day as text; midnight passes. Expected: one clock."""
+    stamps = [START + timedelta(seconds=float(t)) for t in columns["time_s"]]
+    path = parquet([s.replace(hour=7) for s in stamps], [s.strftime(clock) for s in stamps])
+    v = read_voyage(path, parse_map({"time": {"column": ["day", "clock"], **time}}, "m.toml"))
+    np.testing.assert_allclose(v.time_s, columns["time_s"], atol=1e-5)
+    assert v.meta["start_time_utc"] == "2026-11-25T23:59:30Z"
+
+
+@pytest.mark.parametrize(("day", "form"), [(20261125, "%Y%m%d %H:%M:%S"), (START, "%d.%m.%Y at %H:%M:%S")])
+def test_a_time_of_a_number_and_a_text_that_do_not_fit_is_refused_by_their_names(
+    parquet, columns, refused, day, form
+):
+    path = parquet([day] * columns["time_s"].size, ["12:30:05"] * columns["time_s"].size)
+    by = parse_map({"time": {"column": ["day", "clock"], "format": form}}, "m.toml")
+    refused(path, "'day'", "'clock'", "as text", by=by)

@@ -13,11 +13,7 @@ from twin.recording.formats.binary_tables import Packed
 from twin.recording.mapping import Key, Map, TimeColumn
 from twin.recording.place import FRAMED, no_latitude, placed, scaled
 from twin.recording.table import Table, read_packed, read_table
-from twin.recording.timebase import (
-    TimeAxis,
-    clock_from_numbers,
-    clock_from_text,
-)
+from twin.recording.timebase import EPOCH_S, TimeAxis, clock_from_numbers, clock_from_text, day
 from twin.recording.units import froude
 
 ABOUT = "shiptwin.voyage"  # the table of words in a voyage's own log; values are JSON
@@ -75,14 +71,33 @@ def about(path: Path, clock: TimeAxis) -> dict[str, Any]:
 
 def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> TimeAxis:
     """The clock of a table: numbers (several are added up by `factors`), moments that a packed table keeps,
-    or text."""
+    or text. DataError: a number and a text among them do not fit."""
     if all(s in table.numbers for s in stamps):
         if spec.is_text:
             spec = TimeColumn(spec.column)
         return clock_from_numbers(path, sum_of([table.numbers[s] for s in stamps], spec.factors), spec)
     joint = " " if spec.format else "T"
-    words = [joint.join(parts) for parts in zip(*(table.texts[s] for s in stamps), strict=True)]
+    words = [
+        joint.join(parts) for parts in zip(*stamps_as_text(path, table, stamps, spec.format), strict=True)
+    ]
     return clock_from_text(path, table.lines, words, spec)
+
+
+def stamps_as_text(path: Path, table: Table, stamps: tuple[Key, ...], form: str) -> list[list[str]]:
+    """The columns of a time as text, of which some may be moments that a packed table keeps: of these the
+    day, for the time of day stands beside it. DataError: they are no moments, or `form` has not a part for
+    each column."""
+    forms = form.split(" ") if form else ["%Y-%m-%d"] * len(stamps)
+    kept = {s: table.numbers[s] for s in stamps if s in table.numbers}
+    if kept and (len(forms) != len(stamps) or any(np.any(x < EPOCH_S) for x in kept.values())):
+        numbers, texts = (", ".join(repr(s) for s in stamps if (s in kept) == here) for here in (True, False))
+        raise DataError(
+            f"{path}: of the time {numbers} holds numbers and {texts} text, and together they are none. "
+            "Write all as text, or the day as a moment and the format with a part for each column and a blank "
+            'between: [time] format = "%d.%m.%Y %H:%M:%S".'
+        )
+    days = {s: [day(x, forms[stamps.index(s)]) for x in moments] for s, moments in kept.items()}
+    return [(days if s in kept else table.texts)[s] for s in stamps]
 
 
 def opened_table(kind: Format, path: Path) -> Packed:

@@ -148,6 +148,11 @@ def utc(seconds: float) -> str:
     return datetime.fromtimestamp(seconds, UTC).isoformat().replace("+00:00", "Z")
 
 
+def day(seconds: float, form: str) -> str:
+    """The UTC day of a moment [s since 1970] in this format; "" of none."""
+    return datetime.fromtimestamp(seconds, UTC).strftime(form) if np.isfinite(seconds) else ""
+
+
 def moment_of(stamp: str | None) -> float:
     """Seconds since 1970 of an ISO-8601 stamp; 0 when there is none."""
     return datetime.fromisoformat(stamp).timestamp() if stamp else 0.0

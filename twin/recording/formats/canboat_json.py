@@ -67,7 +67,9 @@ def read(path: Path) -> Signals:
         for quantity, angle, value in found:
             name = f"{pgn}.{message.get('src', '')}.{quantity.rpartition('_')[0]}{instance_of(fields)}"
             more = beside(quantity, fields)
-            out.put(name, str(message.get("src", "")), quantity, t, value + more, int(pgn in (129029, 127258)))
+            out.put(
+                name, str(message.get("src", "")), quantity, t, value + more, int(pgn in (129029, 127258))
+            )
             if angle:
                 largest[name] = max(value, largest.get(name, value))
     in_degrees(out, largest, units)
@@ -104,7 +106,7 @@ def one_field(fields: dict[str, Any], *names: str) -> Any:
 
 
 def instance_of(fields: dict[str, Any]) -> str:
-    """What follows the name of a series of the second rudder or engine of one source; nothing of the first."""
+    """What follows the name of a series of the second rudder or engine of a source; nothing of the first."""
     told = one_field(fields, "instance", "engineinstance")
     return "" if told in FIRST else f"_{str(told).lower().replace(' ', '_')}"
 
