@@ -93,7 +93,7 @@ def stamps_as_text(path: Path, table: Table, stamps: tuple[Key, ...], form: str)
         numbers, texts = (", ".join(repr(s) for s in stamps if (s in kept) == here) for here in (True, False))
         raise DataError(
             f"{path}: of the time {numbers} holds numbers and {texts} text, and together they are none. "
-            "Write all as text, or the day as a moment and the format with a part for each column and a blank "
+            "Write all as text, or the day as a moment and the format with a part for each column, a blank "
             'between: [time] format = "%d.%m.%Y %H:%M:%S".'
         )
     days = {s: [day(x, forms[stamps.index(s)]) for x in moments] for s, moments in kept.items()}
