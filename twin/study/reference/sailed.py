@@ -2,6 +2,7 @@
 feed."""
 
 import hashlib
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -64,6 +65,9 @@ def read_all(paths: Sequence[str], ship: Ship, progress: Progress = silent) -> l
 
 
 def _sha256(path: str) -> str:
+    """Of a file; nothing of a folder, whose voyage is known by its samples."""
+    if os.path.isdir(path):
+        return ""
     with open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
