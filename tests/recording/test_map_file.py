@@ -156,3 +156,20 @@ def test_the_factor_of_a_single_column_counts(columns, write_csv):
     by = parse_map({"columns": {"rudder_angle_deg": {"factors": [-0.5]}}}, "m.toml")
     rudder = read_voyage(write_csv(columns), by)["rudder_angle_deg"]
     np.testing.assert_allclose(rudder, -0.5 * columns["rudder_angle_deg"], rtol=1e-7)
+
+
+@pytest.mark.parametrize("left_out", [("lat",), ("NS",), ("lat", "NS")], ids=" ".join)
+@pytest.mark.parametrize("entry", [{"unit": "dms"}, {"hemisphere": "NS"}], ids=str)
+def test_an_optional_position_as_text_or_with_its_letter_may_be_absent(columns, write_csv, entry, left_out):
+    """Expected: it is read where all of its columns are there, and left out, with a word, where one is not."""
+    lat = {"lat": np.full(columns["time_s"].size, 57.0), "NS": ["S"] * columns["time_s"].size}
+    motion = {n: x for n, x in columns.items() if n not in ("north_m", "east_m")} | {
+        "longitude_deg": 11.0 * lat["lat"] / 57.0
+    }
+    by = parse_map({"columns": {"latitude_deg": {"column": "lat", "optional": True, **entry}}}, "m.toml")
+    needed = {"lat", *entry.values()} & set(lat)
+    for there in (lat, {n: x for n, x in lat.items() if n not in left_out}):
+        v = read_voyage(write_csv(motion | there), by)
+        assert ("latitude_deg" in v.meta["given"]) == (needed <= set(there))
+        for name in needed - set(there):
+            assert f"the optional column {name!r} is not there" in v.meta["notes"]

@@ -36,21 +36,17 @@ def number_keys(columns: Iterable[Column]) -> list[Key]:
 
 def text_keys(columns: Iterable[Column]) -> list[Key]:
     """The columns of a file that are read as text: degrees as text, letters of a hemisphere."""
-    return [
-        k
-        for c in columns
-        for k in (*(c.parts if c.is_text else ()), *((c.hemisphere,) if c.hemisphere else ()))
-    ]
+    return [key for c in columns for key in (c.needs if c.is_text else c.letters)]
 
 
 def optional_keys(columns: Iterable[Column]) -> list[Key]:
     """The columns of a file that a map may go without."""
-    return [k for c in columns if c.optional for k in (*c.parts, *((c.hemisphere,) if c.hemisphere else ()))]
+    return [key for c in columns if c.optional for key in c.needs]
 
 
 def there(table: Table, c: Column) -> bool:
     """Whether every column that an entry needs was read."""
-    return all(key in table.numbers or key in table.texts for key in c.parts)
+    return all(key in table.numbers or key in table.texts for key in c.needs)
 
 
 def converted(

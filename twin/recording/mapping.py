@@ -91,6 +91,16 @@ class Column:
         return self.column if isinstance(self.column, tuple) else (self.column,)
 
     @property
+    def letters(self) -> tuple[Key, ...]:
+        """The column of its hemisphere, if it has one."""
+        return () if self.hemisphere is None else (self.hemisphere,)
+
+    @property
+    def needs(self) -> tuple[Key, ...]:
+        """Every column without which it cannot be read."""
+        return (*self.parts, *self.letters)
+
+    @property
     def is_text(self) -> bool:
         """Whether its cells are degrees and minutes as text."""
         return self.unit == "dms"

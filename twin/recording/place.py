@@ -44,6 +44,9 @@ def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict
         north, east, facts["datum"] = chart(latitude, _with(time_s, longitude, latitude, CHART[1], 360.0))
         if set(CHART).isdisjoint(columns):
             columns |= dict(zip(CHART, (north, east), strict=True))
+    for half in set(PLACES) & set(columns):
+        del columns[half]
+        notes.append(f"{half} is not used: a position needs both {' and '.join(PLACES)}")
     for name in CHART:
         if name in columns:
             columns[name], said = from_zero(name, columns[name])

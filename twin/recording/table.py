@@ -49,12 +49,11 @@ def read_table(
         sheet = Sheet(path, stream, layout)
         absent = [key for key in optional if not sheet.has(key)]
         sheet.notes += [f"the optional column {key!r} is not there" for key in absent]
-        quick = quickly(
-            sheet, [key for key in numbers if key not in absent], texts, find_encoding(head_of(path))
-        )
+        numbers, texts = ([key for key in keys if key not in absent] for keys in (numbers, texts))
+        quick = quickly(sheet, numbers, texts, find_encoding(head_of(path)))
         if quick is not None:
             return quick
-        return collect(sheet, [key for key in numbers if key not in absent], texts)
+        return collect(sheet, numbers, texts)
 
 
 def quickly(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key], encoding: str) -> Table | None:
