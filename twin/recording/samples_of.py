@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.errors import DataError, SettingsError, did_you_mean
+from twin.errors import DataError, SettingsError, TwinError, did_you_mean
 from twin.live.signals.channels import BY_NAME
 from twin.recording.cells import number_keys
 from twin.recording.formats import Format, recognised
@@ -54,16 +54,25 @@ def raw_of(path: Path, by: Map | None, sources: Sources) -> Raw:
 
 
 def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
-    """What is packed in a .zip: one log or table, or several tables that are joined. DataError: what is
-    packed cannot be read."""
+    """What is packed in a .zip: one log or table, or several tables that are joined. TwinError: what is
+    packed cannot be read, or a setting does not fit it."""
     with TemporaryDirectory() as folder:
         files = unpacked(path, Path(folder))
         try:
-            if len(files) == 1:
-                return replace(raw_of(files[0], by, sources), path=path)
-            return replace(joined(files, by), path=path)
-        except DataError as error:
-            raise DataError(str(error).replace(folder, str(path))) from None
+            raw = raw_of(files[0], by, sources) if len(files) == 1 else joined(files, by)
+        except TwinError as error:
+            raise type(error)(str(error).replace(folder, str(path))) from None
+        return replace(raw, path=path, meta=raw.meta | of_whole(path, Path(folder), raw.meta))
+
+
+def of_whole(path: Path, folder: Path, meta: dict[str, Any]) -> dict[str, Any]:
+    """Where samples come from that were unpacked into a folder: the .zip, and the names of its files."""
+    facts: dict[str, Any] = {}
+    if Path(meta["source"]).is_relative_to(folder):
+        facts["source"] = str(path)
+    if "files" in meta:
+        facts["files"] = [Path(file).relative_to(folder).as_posix() for file in meta["files"]]
+    return facts
 
 
 def from_log(path: Path, by: Map | None = None) -> Raw:
