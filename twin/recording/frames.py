@@ -16,10 +16,10 @@ SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
 def chart(
     latitude_deg: np.ndarray, longitude_deg: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
-    """(north_m, east_m, datum) on a chart that begins at the first position and goes along with the ship; NaN
-    without a position. All (N,): [deg] in, [m] out."""
+    """(north_m, east_m, datum) on a chart that begins at the first position that there is on the earth, and
+    goes along with the ship; NaN without a position. All (N,): [deg] in, [m] out."""
     places = list(zip(latitude_deg.tolist(), longitude_deg.tolist(), strict=True))
-    good = [not (a != a or b != b or is_no_position(a, b)) for a, b in places]
+    good = [abs(a) <= 90.0 and -180.0 <= b <= 360.0 and not is_no_position(a, b) for a, b in places]
     if not any(good):
         nothing = np.full(latitude_deg.shape, np.nan)
         return nothing, nothing.copy(), {}
