@@ -143,6 +143,8 @@ UNKNOWN = (
     "channels.yaw_rate_dps.mae=1",
     "learned_share@60=1",
     "position_mae_m@soon=1",
+    "position_mae_m=nan",
+    "position_mae_m=inf",
 )
 
 

@@ -20,13 +20,15 @@ METRICS = (
 
 
 def threshold(text: str) -> tuple[str, float]:
-    """METRIC=VALUE, refused before any work when there is no such metric."""
+    """METRIC=VALUE, refused before any work when there is no such metric or the value is no finite number."""
     name, _, value = text.partition("=")
     bare, at, seconds = name.partition("@")
     try:
         limit = float(value)
         if at:
             positive(seconds)
+        if not math.isfinite(limit):
+            raise ValueError(value)
     except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(
             f"{text!r}: METRIC=VALUE is needed, such as position_mae_m=50"
@@ -41,7 +43,7 @@ def metric(result: dict[str, Any], name: str) -> float | None:
     """The number that --fail-above speaks of; None when these voyages do not give it."""
     name, _, at = name.partition("@")
     row = next(
-        (r for r in result["horizons"] if at and f"{as_given(r['horizon_s'])}" == at),
+        (r for r in result["horizons"] if at and r["horizon_s"] == float(at)),
         None if at else result["horizons"][-1],
     )
     if row is not None and name == "noise_units":
