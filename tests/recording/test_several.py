@@ -31,3 +31,30 @@ def test_a_late_heading_of_a_joined_table_passes_north_and_no_hole(tables, colum
     before = v.time_s < 18.9
     np.testing.assert_allclose(shown[before], np.mod(heading[before] + 0.5, 360.0), atol=1e-6)
     assert np.isnan(shown[(v.time_s > 19.1) & (v.time_s < 50.0)]).all()
+
+
+def test_what_is_cut_off_or_assumed_of_a_joined_table_is_told(tables, columns):
+    """Test: a motion whose last line is torn, and controls whose clock counts milliseconds since 1970. Expected:
+    the voyage says both, with the file."""
+    since_1970 = 1.7e9 + columns["time_s"]
+    folder = tables({"time_s": since_1970}, {"time_s": 1e3 * since_1970})
+    with open(folder / "motion.csv", "a") as out:
+        out.write("1700000060,1.0")
+    meta = read_voyage(folder).meta
+    rows = columns["time_s"].size
+    assert meta["lost"] == (
+        f"motion.csv: line {rows + 2} is cut off at the end of the file and was left out",
+    )
+    assert any(note.startswith("controls.csv: the time counts milliseconds") for note in meta["notes"])
+
+
+def test_the_rounded_stamps_of_each_joined_table_are_rebuilt(tables, columns):
+    """Test: rows every 0.1 s with stamps in whole seconds. Expected: even stamps again, and a sentence for each
+    table."""
+    rounded = np.floor(columns["time_s"])
+    folder = tables({"time_s": rounded}, {"time_s": rounded})
+    v = read_voyage(folder, parse_map({"time": {"column": "time_s", "rebuild": True}}, "m.toml"))
+    assert len(v) == rounded.size and np.ptp(np.diff(v.time_s)) < 1e-9
+    assert v.time_s == pytest.approx(columns["time_s"], abs=0.1)
+    for name in ("motion.csv", "controls.csv"):
+        assert any(note.startswith(f"{name}: time stamps rebuilt") for note in v.meta["notes"])

@@ -20,7 +20,7 @@ from twin.recording.headers import column_names, overlaid, own_names
 from twin.recording.mapping import Column, Map, TimeColumn
 from twin.recording.raw import Raw, opened_table, read_clock, stamps_of, table_of, through
 from twin.recording.table import Table
-from twin.recording.timebase import TimeAxis, clock_from_numbers, moment_of
+from twin.recording.timebase import TimeAxis, clock_from_numbers, moment_of, rebuilt
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".gz", ".parquet", ".feather", ".arrow", ".xlsx")
 SAYS = "several tables"
@@ -61,14 +61,15 @@ class Part:
 def joined(paths: Sequence[Path], by: Map | None) -> Raw:
     """The samples of several tables on one clock."""
     parts = [Part(path) for path in files_in(paths)]
-    signals, notes = Signals(paths[0], SAYS), []  # type: Signals, list[str]
+    signals, notes, lost = Signals(paths[0], SAYS), list[str](), list[str]()
     maps = placed_in(parts, by, paths[0]) if by else own_maps(parts, notes)
     for part, own in maps:
-        add(signals, part, own, notes)
+        add(signals, part, own, notes, lost)
     signals.finish()
     starts = min(float(s.times[0]) for s in signals.series.values())
     time_s, columns = as_columns(signals, list(signals.series))
-    table = Table(paths[0], np.arange(1, time_s.size + 1), dict(columns.items()), {})
+    lines = np.arange(1, time_s.size + 1)
+    table = Table(paths[0], lines, dict(columns.items()), {}, lost=tuple(lost))
     frames = {name: c for _, own in maps for name, c in own.columns.items()}
     whole = replace(by or Map(), columns={n: Column(n, frame=frames[n].frame) for n in columns}, time=None)
     clock = clock_from_numbers(paths[0], time_s, TimeColumn()) if starts > 1e8 else TimeAxis(time_s)
@@ -127,12 +128,19 @@ def file_of(parts: Sequence[Part], name: str, c: Column, where: Path) -> int | N
     )
 
 
-def add(signals: Signals, part: Part, by: Map, notes: list[str]) -> None:
-    """The channels of one file, each on its own clock."""
+def add(signals: Signals, part: Part, by: Map, notes: list[str], lost: list[str]) -> None:
+    """The channels of one file, each on its own clock, what was assumed of it and what was damaged."""
+    spec = by.time or TimeColumn()
     table = table_of(part.path, by, part.packed)
-    clock = read_clock(part.path, table, stamps_of(by), by.time or TimeColumn())
-    time_s = clock.time_s + moment_of(clock.start_time_utc)
-    notes += [f"{part.path.name}: {said}" for said in table.notes]
+    clock = read_clock(part.path, table, stamps_of(by), spec)
+    own, known = clock.time_s.copy(), np.isfinite(clock.time_s)
+    said = [*table.notes, *clock.notes]
+    if spec.rebuild is not False and known.any():
+        own[known], how = rebuilt(part.path, own[known], spec.rebuild)
+        said.append(how)
+    time_s = own + moment_of(clock.start_time_utc)
+    notes += [f"{part.path.name}: {one}" for one in said]
+    lost += [f"{part.path.name}: {one}" for one in table.lost]
     for name, c in by.columns.items():
         if there(table, c):
             values = converted(name, table, c, time_s, by.name, notes)
