@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.live.signals.channels import of_actuators
 from twin.num import as_given, num
-from twin.recording.checks.check_result import Check, doubtful, good, wrong
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.unknown_controls import CONTROLS, gaps
 from twin.recording.voyage import Voyage
@@ -124,6 +124,12 @@ def clock_steps(view: VoyageView) -> Check:
     usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
     for i in np.flatnonzero(steps > 0.9 * STEPS_S[0][0]):
         said = next((text for size, text in STEPS_S if abs(steps[i] - usual - size) <= NEAR_S + usual), None)
+        if said and view.derived("north_m"):
+            return cannot_tell(
+                name,
+                f"{said} without a row after {as_given(t[i])} s, and where the ship was is only summed up of "
+                "its velocities: record the position.",
+            )
         if said and went_on(view.voyage, int(i), usual):
             return wrong(
                 name,
@@ -136,10 +142,6 @@ def clock_steps(view: VoyageView) -> Check:
 
 def went_on(voyage: Voyage, i: int, usual: float) -> bool:
     """Whether the ship was way on and yet moved over a gap no more than it does in a few rows."""
-    if any(
-        name in voyage.meta.get("derived", {}) for name in ("north_m", "surge_velocity_mps")
-    ) and not voyage.has("north_m"):
-        return False
     place = voyage["north_m"] + 1j * voyage["east_m"]
     before = place[max(i - 20, 0) : i + 1]
     after = place[i + 1 : i + 21]
