@@ -41,9 +41,15 @@ def test_tables_out_of_a_zip_are_named_without_the_folder_they_were_unpacked_int
 def test_an_imported_voyage_out_of_a_zip_remembers_what_it_was_imported_from(
     packed, columns, write_csv, tmp_path
 ):
-    source = write_csv(columns)
-    write_voyage(read_voyage(source), tmp_path / "v.mcap")
-    assert read_voyage(packed(tmp_path / "v.mcap")).meta["source"] == str(source)
+    """Test: a voyage of one table, and one of two. Expected: their own source and files, wherever they lie."""
+    controls = ("rudder_angle_deg", "propeller_rate_rpm")
+    a = write_csv({n: x for n, x in columns.items() if n not in controls}, "a.csv")
+    b = write_csv({n: columns[n] for n in ("time_s", *controls)}, "b.csv")
+    for source in (write_csv(columns), [a, b]):
+        voyage = read_voyage(source)
+        write_voyage(voyage, tmp_path / "v.mcap")
+        meta = read_voyage(packed(tmp_path / "v.mcap")).meta
+        assert meta["source"] == voyage.meta["source"] and meta.get("files") == voyage.meta.get("files")
 
 
 def test_a_wrong_setting_of_what_is_packed_names_the_zip(packed, columns, write_csv):

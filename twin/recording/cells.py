@@ -16,11 +16,10 @@ from twin.recording.units import factor
 
 PARTS = re.compile(r"\d+(?:[.,]\d+)?")
 WORDS = re.compile(r"[A-Z]+")
-UNIT_MARKS = (
-    re.compile(  # of degrees, minutes and seconds; an S is the seconds' only behind the minutes' mark
-        r"(?<=\d)\s*(?:D(?:EG(?:REES?)?)?|SEC(?:ONDS?)?"
-        r"|M(?:IN(?:UTES?)?)?(?:\s*[\d.,]+\s*S(?:EC(?:ONDS?)?)?(?!OUTH))?)"
-    )
+# of degrees, minutes and seconds; an S is the seconds' only behind the minutes' mark
+UNIT_MARKS = re.compile(
+    r"(?<=\d)\s*(?:D(?:EG(?:REES?)?)?|SEC(?:ONDS?)?"
+    r"|M(?:IN(?:UTES?)?)?(?:\s*[\d.,]+\s*S(?:EC(?:ONDS?)?)?(?!OUTH))?)"
 )
 HEMISPHERES = {word: word[0] for word in ("N", "S", "E", "W", "NORTH", "SOUTH", "EAST", "WEST")}
 NEGATIVE = frozenset("SWsw-")

@@ -66,13 +66,12 @@ def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
 
 
 def of_whole(path: Path, folder: Path, meta: dict[str, Any]) -> dict[str, Any]:
-    """Where samples come from that were unpacked into a folder: the .zip, and the names of its files."""
-    facts: dict[str, Any] = {}
-    if Path(meta["source"]).is_relative_to(folder):
-        facts["source"] = str(path)
-    if "files" in meta:
-        facts["files"] = [Path(file).relative_to(folder).as_posix() for file in meta["files"]]
-    return facts
+    """Where samples come from that were unpacked into a folder: the .zip, and the names of its files. Nothing
+    of a voyage that was imported from elsewhere before."""
+    if not Path(meta["source"]).is_relative_to(folder):
+        return {}
+    files = [Path(file).relative_to(folder).as_posix() for file in meta.get("files", ())]
+    return {"source": str(path)} | ({"files": files} if files else {})
 
 
 def from_log(path: Path, by: Map | None = None) -> Raw:
