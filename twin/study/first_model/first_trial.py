@@ -50,13 +50,10 @@ def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
     if not ship.actuators:
         return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
     orders = actuator_orders(ship, 0.0, figures["power"])
-    turns = {
-        a.name: f"{60.0 * orders[f'{a.name}.rate']:.0f} rpm"
-        for a in ship.actuators
-        if "rate" in a.attributes and a.kind != ACROSS
-    }
+    driving = [a for a in ship.actuators if a.kind != ACROSS]
+    turns = {a.name: f"{60.0 * orders[f'{a.name}.rate']:.0f} rpm" for a in driving if "rate" in a.attributes}
     if not turns:
-        return f"{100.0 * figures['power']:.0f} % of the power of {len(ship.actuators)} actuators {at}"
+        return f"{100.0 * figures['power']:.0f} % of the power of {len(driving)} actuators {at}"
     alike = len(set(turns.values())) == 1
     told = next(iter(turns.values())) if alike else ", ".join(f"{n} {rpm}" for n, rpm in turns.items())
     return f"{told} {at}: {bridge}"
