@@ -7,13 +7,13 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.horizon import horizon_s
 from twin.study.diagnosis.open_loop_check import (
     COMPLEXITY,
     FORM_MISSES,
     OpenLoopCheck,
     expected_errors,
     held_out_error,
-    horizon_s,
     mean_error_m,
     measured_error_m,
     open_loop_check,

@@ -21,8 +21,9 @@ from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.consider import Considered, joint_significance
 from twin.study.diagnosis.further import with_further
+from twin.study.diagnosis.horizon import horizon_s
 from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
-from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
+from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.overtime import PARTS, over_time
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.set_and_rate import set_and_rate

@@ -15,6 +15,7 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, SCENARIOS, Case
+from twin.study.diagnosis.horizon import horizon_s, not_judged
 from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
@@ -23,9 +24,7 @@ from twin.study.prediction.windows import MODEL, STRUCTURE, Windows
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
 from twin.study.reference.path_error import of_ship as path_error_of
 from twin.study.reference.structure import once_off
-from twin.study.track.track import Track
 
-HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 # log odds against a second effect that the path does not ask for: of two forms that are only roughly right,
 # one mends the other
 COMPLEXITY = 10.0
@@ -197,18 +196,12 @@ def _expected_error(
     return float(np.hypot.reduce([expected_m[h.scenario], left * nothing_m, levered_m]))
 
 
-def horizon_s(track: Track, model: Model) -> float:
-    """How far ahead a held-out part of this track is predicted [s]."""
-    return min(
-        HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * track.h * (len(track) - 1)
-    )
-
-
 def held_out_error(case: Case, found: Found) -> float:
     """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the
     parameters that the other half asks for, about where the hypothesis stands; the water and air of any day
     are there too, as far as they usually go. What changes with the clock is taken as the whole voyage has it:
-    no other hour tells of it; and so are the numbers of a voyage alone that has one segment."""
+    no other hour tells of it; and so are the numbers of a voyage alone that has one segment. DataError: no
+    part ends where a position was read."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
     every_day = {u.label for u in case.effects if u.every_day}
@@ -242,7 +235,9 @@ def held_out_error(case: Case, found: Found) -> float:
             here = case.at(mine, z, track).without_inputs(track.missing())[0]
             errors = _errors(coarse(track, here, horizon_s(track, case.model), leads=1, begins=begins), MODEL)
             total, count = total + float(np.nansum(errors)), count + int(np.isfinite(errors).sum())
-    return total / max(count, 1)
+    if not count:
+        raise not_judged(case.tracks, case.model)
+    return total / count
 
 
 def _usual(case: Case, noise_models: Sequence[NoiseModel], simulated_alone: bool) -> list[float]:

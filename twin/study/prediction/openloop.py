@@ -116,7 +116,7 @@ def coarse_each(
     """The same of so many models (M,) side by side, whose numbers of the core differ: `model` holds each that
     does as a column of shape (M, 1). `begins` (N,): the grid steps
     at which windows may begin."""
-    steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
+    steps = coarse_steps(track, model)
     lead = steps * np.unique(
         np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int)
     )
@@ -130,6 +130,18 @@ def coarse_each(
     )
     valid = _valid(track, measured, start, lead)
     return [Windows(track, start, lead, each[None, :, i], valid, measured) for i in range(count)]
+
+
+def coarse_steps(track: Track, model: Model) -> int:
+    """Grid steps that `coarse` takes at once [count]."""
+    return max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
+
+
+def windows_judged(track: Track, lead: int) -> int:
+    """How many windows of so many grid steps can be judged [count]."""
+    measured = seen(track)
+    start = _starts(track, np.isfinite(measured[:, :3]).all(1), lead, STRIDE_S)
+    return int(_valid(track, measured, start, np.array([lead])).sum())
 
 
 def ends(track: Track, model: Model, horizons_s: Sequence[float]) -> list[Windows]:

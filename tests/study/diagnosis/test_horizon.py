@@ -1,0 +1,33 @@
+"""How far ahead a voyage is judged, and that there is something to judge it by."""
+
+import numpy as np
+import pytest
+
+from tests.study.conftest import seldom
+from twin.errors import DataError
+from twin.physics.model import Model
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.horizon import HORIZON_S, horizon_s
+from twin.study.diagnosis.open_loop_check import expected_errors, mean_error_m
+from twin.study.track.track import track
+
+
+def test_a_voyage_that_is_logged_slowly_is_judged_where_a_position_was_read(tanker, voyages):
+    """Test: a sample every nine seconds, of which 120 s are no multiple. Expected: the model ends somewhere, and
+    somewhere is expected, 117 s ahead; of a sample every second 120 s ahead to the last digit."""
+    case = assemble([seldom(voyages["Wind"], 9)], tanker)
+    assert mean_error_m(case, case.model) > 1.0 and min(expected_errors(case).values()) > 1.0
+    assert horizon_s(case.tracks[0], case.model) == pytest.approx(117.0)
+    assert horizon_s(track(voyages["Wind"], tanker), Model.of(tanker)) == HORIZON_S
+
+
+def test_a_voyage_whose_positions_are_never_so_far_apart_is_refused_before_it_is_judged(tanker, voyages):
+    """Test: a position every 250 s. Expected: one line with how often one was read and what to record."""
+    every = voyages["Wind"]
+    columns = {n: x.copy() for n, x in every.columns.items()}
+    for name in ("north_m", "east_m"):
+        columns[name][np.arange(columns[name].size) % 250 > 0] = np.nan
+    with pytest.raises(
+        DataError, match=r"read together 5 times in 12\d\d s, and never 120 s apart.* every 3 s"
+    ):
+        assemble([every.with_rows(every.time_s, columns)], tanker)

@@ -1,0 +1,51 @@
+"""How far ahead the held-out parts of a voyage are predicted: to where a position was read."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from twin.errors import DataError
+from twin.num import as_given, num
+from twin.physics.model import Model
+from twin.study.estimation.start import BRIDGE_S, seen
+from twin.study.prediction.openloop import coarse_steps, windows_judged
+from twin.study.track.track import Track
+
+HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
+
+
+def horizon_s(track: Track, model: Model) -> float:
+    """How far ahead a held-out part of this track is predicted [s]; where positions are read more slowly than
+    they are bridged, a little less: as far as the most of its parts end at one."""
+    most = min(
+        HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * track.h * (len(track) - 1)
+    )
+    wait = int(np.median(np.diff(_placed(track), prepend=0, append=len(track))))
+    if wait <= 1:
+        return most
+    steps = coarse_steps(track, model)
+    longest = steps * max(1, int(most / track.h / steps))
+    leads = range(longest, max(0, longest - steps * wait), -steps)
+    return track.h * max(leads, key=lambda lead: windows_judged(track, lead))
+
+
+def require_judged(tracks: Sequence[Track], model: Model) -> None:
+    """DataError where no part of any track ends, so far ahead, where a position was read."""
+    if not any(windows_judged(t, round(horizon_s(t, model) / t.h)) for t in tracks):
+        raise not_judged(tracks, model)
+
+
+def not_judged(tracks: Sequence[Track], model: Model) -> DataError:
+    """What is said of voyages on which nobody can say how far off a prediction ends."""
+    names, ahead = ", ".join(t.name for t in tracks), min(horizon_s(t, model) for t in tracks)
+    count, sailed_s = sum(_placed(t).size for t in tracks), sum(t.h * len(t) for t in tracks)
+    return DataError(
+        f"{names}: place and heading are read together {count} times in {sailed_s:.0f} s, and never "
+        f"{num(ahead)} s apart: how far off a prediction ends cannot be judged. Record both at least every "
+        f"{as_given(BRIDGE_S)} s."
+    )
+
+
+def _placed(track: Track) -> np.ndarray:
+    """(P,) the steps at which place and heading were read, short holes bridged."""
+    return np.flatnonzero(np.isfinite(seen(track)[:, :3]).all(1))
