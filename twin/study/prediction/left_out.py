@@ -112,9 +112,16 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
 def _parts(tracks: Sequence[Track], without: Sequence[Model]) -> list[tuple[Track, Model, slice | None]]:
     """Every track with the model that was not fitted to it, and which of its windows count."""
     if len(tracks) == 1 and len(without) == 2:
-        middle = len(tracks[0]) // 2
+        middle = halved_at(tracks[0])
         return [(tracks[0], without[0], slice(0, middle)), (tracks[0], without[1], slice(middle, None))]
     return [(t, m, None) for t, m in zip(tracks, without, strict=True)]
+
+
+def halved_at(track: Track) -> int:
+    """The step that half of what can be filtered of a track lies before, as its segments are halved: a hole
+    counts for nothing."""
+    steps = np.flatnonzero(track.whole)
+    return int(steps[steps.size // 2])
 
 
 def _of_part(windows: Windows, keep: slice | None) -> Windows:

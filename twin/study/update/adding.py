@@ -35,6 +35,7 @@ from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 from twin.study.update.beside import beside_the_voyage
 
+FOLDS = 3  # parts of every voyage, each predicted with numbers fitted to the others
 UNTOUCHED = 0.1  # a number whose variance changed by a smaller share was not excited
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
@@ -81,22 +82,35 @@ class Fitted:
     case: Case
     found: Found
 
-    def of_parts(self, parts: int) -> list[Model]:
-        """For each of so many parts of every voyage the model with numbers fitted to the other parts. What
-        changes with the clock is taken as the whole voyages have it: no other hour tells of it."""
+    def of_parts(self) -> list[Model]:
+        """For each of the FOLDS of every voyage the model with numbers fitted to the others. What changes
+        with the clock is taken as the whole voyages have it: no other hour tells of it."""
         case, chosen = self.case, self.found.hypothesis.effects
         lines, at = standing(case, self.found)
         normal = innovate(lines, case.scenarios([self.found.hypothesis.scenario], self.found.doubt), None)[0]
-        middle = [(i, float(lines[i].track.steps()[[a, b - 1]].mean())) for i, a, b in normal.where]
-        of = np.array([min(parts - 1, int(parts * step / len(case.tracks[i]))) for i, step in middle])
+        of = parts_of(case.tracks, [line.track for line in lines], normal.where)
         lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
         models = []
-        for k in range(parts):
+        for k in range(FOLDS):
             part = reduce(normal.only(of != k), case.nuisance, case.unknowns, case.effects, case.temper, at)
             z, left = self.found.posterior.z.copy(), given(part, self.found.posterior.z, ~lasts)
             z[lasts] = boxed(left, chosen, posterior(left, chosen)).z
             models.append(model_with(self.case, self.names, z))
         return models
+
+
+def part_of(step: float, steps: int) -> int:
+    """The part of a voyage of so many steps in which a step of its track lies."""
+    return min(FOLDS - 1, int(FOLDS * step / steps))
+
+
+def parts_of(
+    tracks: Sequence[Track], read: Sequence[Track], segments: Sequence[tuple[int, int, int]]
+) -> np.ndarray:
+    """(S,) in which part of its voyage each segment (track, first, last) lies, of what was `read` of
+    `tracks`."""
+    steps = [np.searchsorted(t.steps(), r.steps()) for t, r in zip(tracks, read, strict=True)]
+    return np.array([part_of(float(steps[i][[a, b - 1]].mean()), len(tracks[i])) for i, a, b in segments])
 
 
 def require_inputs(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:

@@ -14,10 +14,9 @@ from twin.study.prediction.path_prior import errors_of
 from twin.study.reference.path_error import PathError
 from twin.study.reference.sailed import fed
 from twin.study.track.track import Track
-from twin.study.update.adding import Fitted, ahead, lasting
+from twin.study.update.adding import FOLDS, Fitted, ahead, lasting, part_of
 
 HORIZONS_HELD = 2.0  # times that a voyage must hold a horizon to be judged at it
-FOLDS = 3  # parts of every voyage, each predicted with numbers fitted to the others
 Judging = tuple[np.ndarray, float]  # covariance of the error so far ahead, by which a stream is known
 
 
@@ -44,7 +43,7 @@ def predicted(
     Beside lasting effects they are not judged: the stream that the held-out voyage shows stands in their
     place."""
     base = made.case.model
-    models = made.of_parts(FOLDS) if cross_validated else [made.model]
+    models = made.of_parts() if cross_validated else [made.model]
     judged_s = horizons(base, tracks, 1.0 / HORIZONS_HELD)
     asked = sorted({*judged_s, *shown_s})
     errors = errors_of(base.ship, tracks, asked)
@@ -57,11 +56,6 @@ def predicted(
         _each(tracks, some, asked, (errors.at(middle), middle)) for some in ([base] * len(models), own)
     )
     return HeldParts(before, after, known_before, known_after, errors, judged_s)
-
-
-def part_of(step: float, steps: int) -> int:
-    """The part of a voyage in which a step lies."""
-    return min(FOLDS - 1, int(FOLDS * step / steps))
 
 
 def _lasting(base: Model, model: Model, names: Sequence[str]) -> Model:

@@ -1,0 +1,21 @@
+"""Which part of a single voyage is predicted by which half of it."""
+
+import numpy as np
+
+from tests.study.track.test_holes import with_hole
+from twin.study.estimation.normal import Normal
+from twin.study.prediction.left_out import halved_at
+from twin.study.track.segments import segments
+from twin.study.track.track import track
+
+
+def test_a_single_voyage_with_a_hole_is_halved_where_the_fit_halves_it(make, kvlcc2):
+    """Test: a hole behind the first of four segments, and no hole. Expected: the half that is predicted begins
+    where the second half of the segments does; in the middle where there is no hole."""
+    whole = make(seconds=2600.0)
+    holed, whole = (track(v, kvlcc2) for v in (with_hole(whole, 4e4, at_s=660.0), whole))
+    where = tuple(segments([holed], float(kvlcc2.scale("time"))))
+    halves = Normal(*[np.zeros(0)] * 6, where).voyages()
+    assert halves.tolist() == [0, 0, 1, 1]
+    assert abs(halved_at(holed) - where[2][1]) < 0.01 * len(holed)
+    assert halved_at(whole) == len(whole) // 2
