@@ -176,5 +176,18 @@ def test_the_story_of_monday_in_four_lines(tanker, monday):
     assert "HullFouling" not in [type(e).__name__ for e in twin.remove(better.ship, "HullFouling").effects]
 
 
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda ship, v: twin.calibrate(ship, v, held_out=v),
+        lambda ship, v: twin.add(ship, "HullFouling", v, held_out=v),
+        lambda ship, v: twin.compare(ship, [v, v]),
+    ],
+)
+def test_a_voyage_given_twice_is_refused_and_so_is_one_that_is_fitted_and_held_out(tanker, monday, ask):
+    with pytest.raises(DataError, match=r"is the same voyage as monday\. Give each voyage once"):
+        ask(tanker, monday.between(0.0, 800.0))
+
+
 def test_the_packages_type_marker_is_there():
     assert (Path(twin.__file__).parent / "py.typed").is_file()

@@ -20,7 +20,7 @@ from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, knowing_nothing, split
 from twin.study.calibration.stages import Stages
 from twin.study.calibration.worse import away_on_references, refusal
-from twin.study.reference.sailed import Sailed, sailed
+from twin.study.reference.sailed import Sailed, refuse_twice, sailed
 from twin.study.track.segments import long_enough
 
 if TYPE_CHECKING:
@@ -133,8 +133,9 @@ def calibrate(
 
 
 def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progress) -> Calibration:
-    """The same of voyages that are read already. DataError: no numbers of the ship go with them, or one is
-    nowhere whole for long enough."""
+    """The same of voyages that are read already. DataError: no numbers of the ship go with them, one is given
+    twice or nowhere whole for long enough."""
+    refuse_twice((s.voyage.name, s.sha256) for s in (*every, *kept))
     checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
     for s in every:
         long_enough(s.track, ship)

@@ -16,7 +16,7 @@ from twin.study.prediction.open_loop_comparison import ComparedVoyages
 from twin.study.prediction.open_loop_comparison import compare as judged
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.tell import terminal_lines
-from twin.study.reference.sailed import Sailed, sailed
+from twin.study.reference.sailed import Sailed, refuse_twice, sailed
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -113,7 +113,8 @@ def compare(
 def of_sailed(
     ship: Ship, found: Sequence[Sailed], horizons_s: Sequence[float], residual: PathLike | None = None
 ) -> Comparison:
-    """The same of voyages that are read already."""
+    """The same of voyages that are read already. DataError: one is given twice."""
+    refuse_twice((s.voyage.name, s.sha256) for s in found)
     model = Model.of(ship)
     if residual is not None:
         from twin.study.estimation.residual_arrays import learned_force

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, metres, quietly
 from twin.api.voyages import at_least_one
-from twin.errors import DataError
 from twin.live.learning.residual import ship_hash
 from twin.live.prediction.calibrated import SECTION, calibrated_of
 from twin.live.signals import config
@@ -19,7 +18,7 @@ from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.reference.foretold import errors_of
-from twin.study.reference.sailed import samples_hash
+from twin.study.reference.sailed import refuse_twice, samples_hash
 from twin.study.reference.tube_calibration import section
 from twin.study.reference.tube_doubts import doubts
 from twin.study.reference.tube_lines import rows, terminal_lines
@@ -104,7 +103,7 @@ def tube(
     is proved wrong or is given twice. A few seconds for ten minutes of voyage.
     """
     tell, every = quietly(progress), at_least_one(voyages)
-    _once(every)
+    refuse_twice((v.name, samples_hash(v)) for v in every)
     of_voyages(every, ship)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "ship.toml"
@@ -137,11 +136,3 @@ def tube(
         "doubts": doubts(table, every, chosen["prediction.horizons_s"], float(ship.L_pp), fitted),
     }
     return TubeCalibration(made, data=plain(said))
-
-
-def _once(voyages: list[Voyage]) -> None:
-    seen: dict[str, str] = {}
-    for v in voyages:
-        if (key := samples_hash(v)) in seen:
-            raise DataError(f"{v.name}: is the same voyage as {seen[key]}. Give each voyage once.")
-        seen[key] = v.name

@@ -13,7 +13,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
-from twin.study.reference.sailed import Sailed, sailed
+from twin.study.reference.sailed import Sailed, refuse_twice, sailed
 from twin.study.update.added import refused, terminal_lines
 from twin.study.update.addition import HELD_OUT, Added
 from twin.study.update.addition import add as fitted
@@ -146,7 +146,8 @@ def of_sailed(
     force: bool,
     tell: Progress,
 ) -> Update:
-    """The same of voyages that are read already."""
+    """The same of voyages that are read already. DataError: one is given twice."""
+    refuse_twice((s.voyage.name, s.sha256) for s in (*used, *kept))
     check_proof(kept, cross_validated)
     made = fitted(ship, effects, used, kept, force, cross_validated, tell)
     return Update(made.ship, ship, made, tuple(s.voyage for s in kept or used), data=made.result)

@@ -35,7 +35,7 @@ from twin.study.reference.nuisance import (
     with_effects,
 )
 from twin.study.reference.reading import read_lines
-from twin.study.reference.sailed import samples_hash
+from twin.study.reference.sailed import refuse_twice, samples_hash
 from twin.study.reference.seaway import swung
 from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.reference.weather_baseline import as_usual, strengths
@@ -54,23 +54,13 @@ def assemble(
     does not hold a calibration as it was written."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")
-    _refuse_twice(voyages)
+    refuse_twice((v.name, samples_hash(v)) for v in voyages)
     progress("smoothing tracks")
     tracks = [long_enough(track(v, ship), ship) for v in voyages]
     _refuse_pieces(tracks, Model.of(ship))
     require_judged(tracks, Model.of(ship))
     about = Model.of(with_one_step_core(ship))
     return of_tracks([swung(t, about) for t in tracks], ship, references, progress)
-
-
-def _refuse_twice(voyages: Sequence[Voyage]) -> None:
-    """DataError where a voyage was given twice: it would count as twice as much evidence."""
-    known: dict[str, str] = {}
-    for one in voyages if len(voyages) > 1 else ():
-        samples = samples_hash(one)
-        if samples in known:
-            raise DataError(f"{one.name}: is the same voyage as {known[samples]}. Give each voyage once.")
-        known[samples] = one.name
 
 
 def _refuse_pieces(tracks: Sequence[Track], model: Model) -> None:

@@ -3,7 +3,7 @@ feed."""
 
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,12 +56,19 @@ def read_all(paths: Sequence[str], ship: Ship, progress: Progress = silent) -> l
     out: list[Sailed] = []
     for path in paths:
         progress(f"reading {path}")
-        made = sailed(read_voyage(path), ship, _sha256(path))
-        twin = next((s for s in out if s.sha256 == made.sha256), None)
-        if twin is not None:
-            raise DataError(f"{path}: is the same voyage as {twin.track.name}. Give each voyage once.")
-        out.append(made)
+        out.append(sailed(read_voyage(path), ship, _sha256(path)))
+    refuse_twice(zip(paths, (s.sha256 for s in out), strict=True))
     return out
+
+
+def refuse_twice(given: Iterable[tuple[str, str]]) -> None:
+    """DataError where a voyage (what it is called, its hash) was given twice: it would count as twice as much
+    evidence, and judge a fit by what was fitted."""
+    known: dict[str, str] = {}
+    for name, of in given:
+        if of in known:
+            raise DataError(f"{name}: is the same voyage as {known[of]}. Give each voyage once.")
+        known[of] = name
 
 
 def _sha256(path: str) -> str:
