@@ -82,21 +82,25 @@ def _answered(job: Job) -> tuple[Row, list[Row]]:
     from twin.recording.read import read_voyage
     from twin.study.diagnosis.effect_diagnosis import diagnose
     from twin.study.prediction.open_loop_comparison import compare
-    from twin.study.reference.sailed import sailed
+    from twin.study.reference.sailed import sailed, samples_hash
 
     if job.version != twin.__version__:
         raise TwinError(f"this worker has shiptwin {twin.__version__}, not {job.version}. Install the same.")
     voyage = read_voyage(job.voyage_file, read_map(Path(job.map_file)) if job.map_file else None)
     ship = load(job.ship_file)
-    for file, known in ((job.ship_file, job.ship_sha256), (job.voyage_file, job.voyage_sha256)):
-        if known and sha256_of(Path(file)) != known:
+    for file, known in (
+        (job.ship_file, job.ship_sha256),
+        (job.voyage_file, job.voyage_sha256),
+        (job.map_file, job.map_sha256),
+    ):
+        if file and known and sha256_of(Path(file)) != known:
             raise TwinError(f"{file}: {CHANGED}")
     about = _about(job) | {
         "voyage": voyage.name,
         "start_time_utc": voyage.meta.get("start_time_utc"),
         "duration_s": voyage.duration_s,
     }
-    if job.voyage_sha256 in _references(ship):
+    if {job.voyage_sha256, samples_hash(voyage)} & _references(ship):
         return about | {"verdict": "reference", "sentence": "The ship was calibrated on it."}, []
     compared = compare([sailed(voyage, ship)], Model.of(ship)).result
     found = diagnose([voyage], ship).result
@@ -104,6 +108,7 @@ def _answered(job: Job) -> tuple[Row, list[Row]]:
 
 
 def _references(ship: Any) -> set[str]:
+    """Of the voyages that it was calibrated on the hash of the file, or of the samples where Python did."""
     return {str(v.get("sha256")) for v in ship.notes["structural"].get("voyages", [])}
 
 
