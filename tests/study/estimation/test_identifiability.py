@@ -144,6 +144,17 @@ def test_what_was_learned_is_judged_by_its_features_and_by_its_force(zigzag, tol
     assert "of its force" in "\n".join(text(told | {"residual": found}))
 
 
+def test_a_residual_that_is_believed_nowhere_on_a_voyage_is_said_to_be(zigzag, told):
+    """Test: features that are nothing at every moment, as those of a residual far outside what it was trained on.
+    Expected: no angle of what is not there, and a sentence instead of it."""
+    nothing = residual_angles(
+        track(zigzag, SHIP), Model.of(SHIP), lambda s: np.zeros((s.u.size, 3)), np.ones((3, 3))
+    )
+    assert nothing == {}
+    said = "\n".join(text(told | {"residual": nothing}))
+    assert "residual is not believed anywhere on sailed" in said and "residual" not in "\n".join(text(told))
+
+
 def test_features_of_the_wrong_length_are_refused(zigzag):
     with pytest.raises(DataError, match="one row each"):
         residual_angles(track(zigzag, SHIP), Model.of(SHIP), lambda s: np.ones((3, 2)))

@@ -71,7 +71,8 @@ def residual_angles(
 ) -> dict[str, dict[str, Any]]:
     """For each axis: the residual's features against the core's columns of that axis [deg] (the paper's
     F_theta against F_D); with its last layer W (3, F) also how much of the learned force the core could
-    give itself. DataError: there are not as many features as samples."""
+    give itself; of features that are nothing all along, which is a residual that is not believed, no axis.
+    DataError: there are not as many features as samples."""
     thin, known = _thinned(t), of_ship(model.ship)
     A = columns(thin, model, core_unknowns(model), known)[0]
     s = thin.situation()
@@ -81,6 +82,8 @@ def residual_angles(
         raise DataError(
             f"the residual gave {phi.shape} features for {len(thin)} situations: one row each is needed."
         )
+    if not np.any(phi):
+        return {}
     out = {}
     for i, axis in enumerate(("surge", "sway", "yaw")):
         core = basis(A[:, i])
@@ -183,7 +186,11 @@ def verdict(result: Mapping[str, Any]) -> list[str]:
     alike = [name for name, a in result["angles"].items() if a["smallest_deg"] < 5.0]
     if alike:
         lines.append(f"Within 5 deg of what the core can say by itself: {', '.join(alike)}.")
-    if result["residual"]:
+    if result["residual"] == {}:
+        lines.append(
+            f"The residual is not believed anywhere on {result['voyage']}: this voyage says nothing of it."
+        )
+    elif result["residual"]:
         least = min(a["smallest_deg"] for a in result["residual"].values())
         apart = "do not meet" if least > 5.0 else "meet; a regularizer does not make them disjoint"
         lines.append(
