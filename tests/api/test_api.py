@@ -3,6 +3,7 @@
 import inspect
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,9 @@ from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.errors import DataError, SettingsError, UsageError
+from twin.physics.effect import Force as ForceEffect
+from twin.physics.effect import param
+from twin.physics.state import Force
 
 pandas = pytest.importorskip("pandas")
 
@@ -138,6 +142,24 @@ def test_the_json_of_a_simulation_has_the_keys_of_the_table(tanker):
 def test_a_simulated_circle_to_port_turns_to_port(tanker):
     run = twin.simulate(tanker, manoeuvre="circle_-35", duration_s=300.0)
     assert run.to_dataframe()["yaw_rate_degps"].iloc[-1] < -0.1
+
+
+def test_still_water_has_no_input_of_a_plug_ins_effect_either(tanker):
+    """Test: an effect that needs the draught of the day. Expected: it is switched off, as wind is."""
+
+    class Ballast(ForceEffect):
+        """A ship in ballast is pushed aside."""
+
+        needs = ("draught",)
+        source = "a test"
+        push: float = param(1e6, unit="N/m", lo=-1e8, hi=1e8, sd=1e6, doc="push by missing draught")
+
+        def force(self, s, ship):
+            return Force(Y=self.push * (ship.T - s.draught))
+
+    both = (replace(tanker, effects=(*tanker.effects, *more)) for more in ((), (Ballast(),)))
+    without, with_it = (twin.simulate(ship, duration_s=60.0).to_dict()["columns"] for ship in both)
+    assert with_it == without
 
 
 def test_what_cannot_be_simulated_is_refused(tanker):

@@ -10,6 +10,7 @@ from twin.errors import UsageError
 from twin.num import as_given
 from twin.physics.model import Eta_nu, Model
 from twin.physics.ship import Ship
+from twin.physics.state import WEATHER
 from twin.study.prediction.trial import Steer, sail, shaft_speed
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ COLUMNS = (
     "sway_velocity_mps",
     "yaw_rate_degps",
 )
-NOT_IN_STILL_WATER = {"wind_speed", "wind_to", "depth", "H_s", "bank_port", "bank_starboard", "phi"}
 FASTEST_SAILED = 4.0  # times the service speed: no model of a hull holds beyond
 KNOWN = "straight, zigzag_ANGLE, circle_ANGLE (degrees, such as zigzag_20; a circle to port is circle_-35)"
 
@@ -87,7 +87,7 @@ def simulate(
             f"speed_mps = {as_given(speed)}: above 0 and at most {most} m/s is needed, "
             f"{as_given(FASTEST_SAILED)} times the service speed."
         )
-    model = Model.of(ship).without_inputs(NOT_IN_STILL_WATER)[0]
+    model = Model.of(ship).without_inputs(set(WEATHER))[0]
     log = sail(model, _steer(manoeuvre), shaft_speed(model, speed), duration_s, speed)
     columns: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for t, state in log:
