@@ -23,6 +23,7 @@ IMO = (  # MSC.137(76): figure, what it is called, its unit, its limit
     ("tactical_diameter_L", "tactical diameter", "L", 5.0),
     ("overshoot_20_20_deg", "first overshoot of the 20/20 zigzag", "deg", 25.0),
 )
+USUAL_DIAMETERS_L = (1.8, 6.5)  # tactical diameters of ships, in ship lengths
 FULL_C_B = 0.7  # block coefficient from which ships often do not go straight by themselves
 
 
@@ -97,10 +98,11 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
             "an error of these regressions than of "
             "your numbers: calibrate before you trust how it turns"
         )
-    if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
+    low, high = USUAL_DIAMETERS_L
+    if not low <= figures["tactical_diameter_L"] <= high:
         out.append(
-            f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder "
-            "area and speed, and calibrate"
+            f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual ({as_given(low)} to "
+            f"{as_given(high)} L): check rudder area and speed, and calibrate"
         )
     if figures["speed_left"] < 0.2:
         out.append(

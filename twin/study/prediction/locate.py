@@ -21,7 +21,7 @@ from twin.study.prediction.windows import MODEL, SENSORS, STRUCTURE, Windows
 CHANCE = 0.05
 SHIFTS = 400
 # errors are judged by their logarithm, that one wild window does not decide; this much is added to each
-LEAST_TIME_SHARE = 0.05
+LOG_OFFSET = 0.05
 LEAST_WINDOWS_EACH = 8  # windows inside and outside a condition
 RATIO = 1.15  # an error less than this above elsewhere is not worth a sentence
 MAX_CONDITIONS = 8
@@ -57,7 +57,7 @@ def regimes(
     if not asked:
         return []
     masks = np.array([mask[ok] for _, mask in asked], dtype=float)
-    beyond = _beyond_chance(masks, np.log(error[ok] + LEAST_TIME_SHARE), m.voyage[ok])
+    beyond = _beyond_chance(masks, np.log(error[ok] + LOG_OFFSET), m.voyage[ok])
     floor = sizes(windows, horizon_s, STRUCTURE if structural else SENSORS)[ok]
     found = []
     for (text, mask), inside, stands in zip(asked, masks > 0.5, beyond, strict=True):
