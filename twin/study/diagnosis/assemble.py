@@ -15,7 +15,7 @@ from twin.physics.ship_notes import positive, read_from
 from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import MOST_SEGMENTS, ODDS, ODDS_UNNAMED, ODDS_WEATHER, Case, settle
-from twin.study.diagnosis.horizon import horizon_s, require_judged
+from twin.study.diagnosis.horizon import horizon_s, require_positions
 from twin.study.estimation.columns import Unknown, core_unknowns, rough_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear
@@ -58,7 +58,7 @@ def assemble(
     progress("smoothing tracks")
     tracks = [long_enough(track(v, ship), ship) for v in voyages]
     _refuse_pieces(tracks, Model.of(ship))
-    require_judged(tracks, Model.of(ship))
+    require_positions(tracks, Model.of(ship))
     about = Model.of(with_one_step_core(ship))
     return of_tracks([swung(t, about) for t in tracks], ship, references, progress)
 

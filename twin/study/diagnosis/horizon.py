@@ -8,7 +8,7 @@ from twin.errors import DataError
 from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.study.estimation.start import BRIDGE_S, seen
-from twin.study.prediction.openloop import coarse_steps, windows_judged
+from twin.study.prediction.openloop import coarse_steps, valid_windows
 from twin.study.track.track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
@@ -26,23 +26,23 @@ def horizon_s(track: Track, model: Model) -> float:
     steps = coarse_steps(track, model)
     longest = steps * max(1, int(most / track.h / steps))
     leads = range(longest, max(0, longest - steps * wait), -steps)
-    return track.h * max(leads, key=lambda lead: windows_judged(track, lead))
+    return track.h * max(leads, key=lambda lead: valid_windows(track, lead))
 
 
-def require_judged(tracks: Sequence[Track], model: Model) -> None:
+def require_positions(tracks: Sequence[Track], model: Model) -> None:
     """DataError where no part of any track ends, so far ahead, where a position was read."""
-    if not any(windows_judged(t, round(horizon_s(t, model) / t.h)) for t in tracks):
-        raise not_judged(tracks, model)
+    if not any(valid_windows(t, round(horizon_s(t, model) / t.h)) for t in tracks):
+        raise too_sparse(tracks, model)
 
 
-def not_judged(tracks: Sequence[Track], model: Model) -> DataError:
+def too_sparse(tracks: Sequence[Track], model: Model) -> DataError:
     """What is said of voyages on which nobody can say how far off a prediction ends."""
     names, ahead = ", ".join(t.name for t in tracks), min(horizon_s(t, model) for t in tracks)
     count, sailed_s = sum(_placed(t).size for t in tracks), sum(t.h * len(t) for t in tracks)
     return DataError(
-        f"{names}: place and heading are read together {count} times in {sailed_s:.0f} s, and never "
-        f"{num(ahead)} s apart: how far off a prediction ends cannot be judged. Record both at least every "
-        f"{as_given(BRIDGE_S)} s."
+        f"{names}: place and heading are read together {count} times in {num(sailed_s, 3)} s, and never "
+        f"{num(ahead)} s apart with the controls known between: how far off a prediction ends cannot be "
+        f"judged. Record both at least every {as_given(BRIDGE_S)} s."
     )
 
 

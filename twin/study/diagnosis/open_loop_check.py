@@ -15,7 +15,7 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, SCENARIOS, Case
-from twin.study.diagnosis.horizon import horizon_s, not_judged
+from twin.study.diagnosis.horizon import horizon_s, too_sparse
 from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
@@ -236,7 +236,7 @@ def held_out_error(case: Case, found: Found) -> float:
             errors = _errors(coarse(track, here, horizon_s(track, case.model), leads=1, begins=begins), MODEL)
             total, count = total + float(np.nansum(errors)), count + int(np.isfinite(errors).sum())
     if not count:
-        raise not_judged(case.tracks, case.model)
+        raise too_sparse(case.tracks, case.model)
     return total / count
 
 

@@ -137,7 +137,7 @@ def coarse_steps(track: Track, model: Model) -> int:
     return max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
 
 
-def windows_judged(track: Track, lead: int) -> int:
+def valid_windows(track: Track, lead: int) -> int:
     """How many windows of so many grid steps can be judged [count]."""
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), lead, STRIDE_S)

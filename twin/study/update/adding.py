@@ -107,7 +107,7 @@ def part_of(step: float, steps: int) -> int:
 def parts_of(
     tracks: Sequence[Track], read: Sequence[Track], segments: Sequence[tuple[int, int, int]]
 ) -> np.ndarray:
-    """(S,) in which part of its voyage each segment (track, first, last) lies, of what was `read` of
+    """(S,) in which part [count] of its voyage each segment (track, first, last) lies, of what was `read` of
     `tracks`."""
     steps = [np.searchsorted(t.steps(), r.steps()) for t, r in zip(tracks, read, strict=True)]
     return np.array([part_of(float(steps[i][[a, b - 1]].mean()), len(tracks[i])) for i, a, b in segments])
