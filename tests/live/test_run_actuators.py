@@ -181,6 +181,19 @@ def test_an_actuator_that_answers_late_is_where_its_order_was(make):
     assert [y for _, y in seen] == [600, 600, 600, 900, 900, 900]
 
 
+def test_two_actuators_that_answer_late_alike_are_both_where_their_orders_were(make):
+    """Test: turns of both pods are ordered up at once. Expected: with one dead time of 0.3 s for the two of them
+    the physics sees those of either 0.3 s later."""
+    service = make(*PODS, effects={"ActuatorLag.port+fore": {"delay": 0.3, "ease": 0.0}})
+    service.run(3.0, lambda said: said | {"port.rate_rpm": 600.0, "fore.rate_rpm": 600.0})
+    seen = []
+    for _ in range(6):
+        service.run(0.1, lambda said: said | {"port.rate_rpm": 900.0, "fore.rate_rpm": 900.0})
+        told = service.loop.last.situation.orders
+        seen.append((round(60.0 * told["fore.rate"]), round(60.0 * told["port.rate"])))
+    assert seen == [(600, 600)] * 3 + [(900, 900)] * 3
+
+
 @thorough
 def test_the_loss_of_one_thruster_is_learned_on_board(make):
     """Test: the file has ThrusterWear.port at none, the ship has lost 40 % there. Expected: the number that

@@ -245,7 +245,7 @@ def test_what_several_of_one_make_have_alike_is_the_sum_of_what_each_has():
     bow = PORT | {"name": "bow", "kind": "tunnel_thruster"}
     ship = ship_with(PORT, starboard, bow)
     alike = [name for name in of_ship(ship) if "+" in name]
-    assert alike == ["ThrusterWear.port+starboard"]
+    assert alike == ["ThrusterWear.port+starboard", "ActuatorLag.port+starboard"]
     both = find("ThrusterWear.port+starboard")
     assert both.sentence(ship).startswith("The port thruster and the starboard thruster give less thrust")
     s = Situation(

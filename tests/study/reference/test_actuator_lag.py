@@ -13,12 +13,14 @@ from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import fitted_core
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.linear import linearise
+from twin.study.estimation.respond import advance
 from twin.study.reference.nuisance import TEMPER
 from twin.study.reference.sailed import sailed as tracked
 from twin.study.reference.steering_gear import (
     LATER,
     SLOWER,
     gear_unknowns,
+    geared,
     gears_of,
     not_behind,
     with_or_without_gear,
@@ -97,6 +99,18 @@ def test_the_numbers_of_a_shared_lag_are_asked_once_and_of_lags_that_differ_each
     assert [u.label for u in shared] == ["ActuatorLag.port.delay", "ActuatorLag.port.ease"]
     assert all(u.also == ("ActuatorLag.starboard",) for u in shared)
     assert len(gear_unknowns(Model.of(ship).but(port, starboard.but(ease=0.3)))) == 4
+
+
+def test_a_lag_of_two_is_the_lag_of_each_and_is_looked_for_no_more():
+    """Test: one lag of two alike, beside a lag of each that is as long. Expected: the same accelerations; what
+    calibrates looks for no gear of theirs beside it."""
+    ship = ship_of(BOAT)
+    model, t = Model.of(ship), track(sailed(BOAT, 1, SECONDS, BOAT_SEED), ship)
+    each = model.but(*(e.absent(ship).but(delay=0.1, ease=0.3) for e in gears_of(ship)[0]))
+    both = model.but(of_ship(ship)["ActuatorLag.port+starboard"].absent(ship).but(delay=0.1, ease=0.3))
+    np.testing.assert_array_equal(advance(t, both), advance(t, each))
+    assert np.abs(advance(t, both) - advance(t, model)).max() > 0.0
+    assert geared(both, [t], core_unknowns(both), of_ship(ship), TEMPER) is both
 
 
 @pytest.fixture(scope="module")

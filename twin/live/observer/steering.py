@@ -124,12 +124,12 @@ class Gear:
 
 def gears_of(lags: tuple[Lag, ...], rest: Mapping[str, float]) -> RudderGear | ActuatorGears:
     """The gears of a model; `rest`: the orders of its actuators to begin with, {} of a ship with one rudder.
-    A lag of one actuator stands between each of its orders and it."""
+    A lag of an actuator, or of several, stands between each of their orders and them."""
     if not rest:
         return RudderGear([Gear(lag) for lag in lags])
     gears = dict[str, list[Gear]]()
     for lag in lags:
         for name in rest:
-            if name.partition(".")[0] == getattr(lag, "actuator", ""):
+            if name.partition(".")[0] in getattr(lag, "names", ()):
                 gears.setdefault(name, []).append(Gear(lag))
     return ActuatorGears(gears, rest)

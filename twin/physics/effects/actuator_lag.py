@@ -1,4 +1,5 @@
-"""One actuator answers late: what is recorded is its order, and thrust or angle follow it.
+"""One actuator, or several of one make alike, answers late: what is recorded is its order, and thrust or
+angle follow it.
 
 d(actual)/dt = (order(t - delay) - actual)/ease
 """
@@ -15,6 +16,10 @@ class ActuatorLag(OfActuator, Lag):
     """This actuator answers late and slowly: a dead time and a time constant stand between its order and what
     it does."""
 
+    of_several = (
+        "These actuators answer late and slowly, all alike: a dead time and a time constant stand between "
+        "their orders and what they do."
+    )
     ages = ("delay",)
     with_core = "what was recorded of it is its order"
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 9 (actuator dynamics)"

@@ -162,12 +162,14 @@ def _lagged(track: Track, model: Model) -> tuple[np.ndarray, Mapping[str, np.nda
     if gears not in track.rudder:
         if len(track.rudder) >= GEARS:
             track.rudder.clear()
-        of_rudder = [g for g in gears if not getattr(g, "actuator", "")]
+        of_rudder = [g for g in gears if not getattr(g, "names", ())]
         orders = track.orders
         for gear in gears if orders else ():
             assert orders is not None
-            name = f"{getattr(gear, 'actuator', '')}."
-            orders = {k: _behind(track, [gear], x) if k.startswith(name) else x for k, x in orders.items()}
+            late = getattr(gear, "names", ())
+            orders = {
+                k: _behind(track, [gear], x) if k.partition(".")[0] in late else x for k, x in orders.items()
+            }
         track.rudder[gears] = (_behind(track, of_rudder, track.delta), orders)
     return track.rudder[gears]  # type: ignore[no-any-return]
 

@@ -42,7 +42,7 @@ def gears_of(ship: ShipLike) -> tuple[Gears, ...]:
         return ((of_role("gear"),),)
     alike: dict[object, list[type[Effect]]] = {}
     for effect in of_ship(ship).values():
-        if issubclass(effect, OfActuator) and issubclass(effect, Lag):
+        if issubclass(effect, OfActuator) and issubclass(effect, Lag) and len(effect.names) == 1:
             alike.setdefault(ship.actuator(effect.actuator).make, []).append(effect)
     return tuple(map(tuple, alike.values()))
 
@@ -124,7 +124,13 @@ def geared(
 
 
 def _there(gears: Gears, model: Model) -> bool:
-    return any(type(e) in gears for e in model.lags)
+    whose = {name for g in gears for name in _late(g)}
+    return any(type(e) in gears or whose & {*_late(type(e))} for e in model.lags)
+
+
+def _late(gear: type[Effect]) -> tuple[str, ...]:
+    """The actuators that answer late by it; none of a steering gear."""
+    return gear.names if issubclass(gear, OfActuator) else ()
 
 
 def _geared(
