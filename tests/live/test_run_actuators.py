@@ -166,32 +166,19 @@ def test_a_slow_azimuth_that_passes_ahead_is_not_thought_to_swing_round_astern(m
     assert sin(seen[0]) < 0.0 < sin(seen[-1])
 
 
-def test_an_actuator_that_answers_late_is_where_its_order_was(make):
-    """Test: turns are ordered up at once. Expected: with a dead time of 0.3 s in the ship file the physics
-    sees them 0.3 s later."""
-    lag = {"ActuatorLag.port": {"delay": 0.3, "ease": 0.0}}
-    service = make(*PODS, effects=lag)
+@pytest.mark.parametrize("late", ("port", "port+fore"))
+def test_an_actuator_that_answers_late_is_where_its_order_was(make, late):
+    """Test: turns of both pods are ordered up at once. Expected: with a dead time of 0.3 s in the ship file, of one
+    of them or of the two alike, the physics sees those 0.3 s later."""
+    service = make(*PODS, effects={f"ActuatorLag.{late}": {"delay": 0.3, "ease": 0.0}})
     service.run(3.0, lambda said: said | {"port.rate_rpm": 600.0, "fore.rate_rpm": 600.0})
-    seen = []
+    seen = {"port": [], "fore": []}
     for _ in range(6):
         service.run(0.1, lambda said: said | {"port.rate_rpm": 900.0, "fore.rate_rpm": 900.0})
-        told = service.loop.last.situation.orders
-        seen.append((round(60.0 * told["fore.rate"]), round(60.0 * told["port.rate"])))
-    assert [x for x, _ in seen] == [900] * 6
-    assert [y for _, y in seen] == [600, 600, 600, 900, 900, 900]
-
-
-def test_two_actuators_that_answer_late_alike_are_both_where_their_orders_were(make):
-    """Test: turns of both pods are ordered up at once. Expected: with one dead time of 0.3 s for the two of them
-    the physics sees those of either 0.3 s later."""
-    service = make(*PODS, effects={"ActuatorLag.port+fore": {"delay": 0.3, "ease": 0.0}})
-    service.run(3.0, lambda said: said | {"port.rate_rpm": 600.0, "fore.rate_rpm": 600.0})
-    seen = []
-    for _ in range(6):
-        service.run(0.1, lambda said: said | {"port.rate_rpm": 900.0, "fore.rate_rpm": 900.0})
-        told = service.loop.last.situation.orders
-        seen.append((round(60.0 * told["fore.rate"]), round(60.0 * told["port.rate"])))
-    assert seen == [(600, 600)] * 3 + [(900, 900)] * 3
+        for name, turns in seen.items():
+            turns.append(round(60.0 * service.loop.last.situation.orders[f"{name}.rate"]))
+    behind = [600] * 3 + [900] * 3
+    assert seen == {"port": behind, "fore": behind if "fore" in late else [900] * 6}
 
 
 @thorough
