@@ -6,6 +6,7 @@
 # Where /etc/shiptwin/release.pem is, only a folder of wheels signed with its private half is installed.
 # For a trial without systemd: ROOT=/some/folder deploy/install.sh
 set -eu
+umask 022  # the service is another user, and has to read what root writes here
 here="$(cd "$(dirname "$0")" && pwd)"
 root="${ROOT:-}"
 base="$root/opt/shiptwin"
@@ -34,12 +35,10 @@ version="$(date -u +%Y%m%dT%H%M%S)"
 new="$base/versions/$version"
 echo "1/4 a fresh environment beside the old ones: $new"
 mkdir -p "$base/versions"
-mkdir -m 755 "$new"
+mkdir "$new"
 trap 'rm -rf "$new"' EXIT
 "$python" -m venv "$new"
-if [ -n "$wheels" ]; then local="--no-index --find-links $wheels"; else local=""; fi
-# shellcheck disable=SC2086 (words)
-pip() { "$new/bin/python" -m pip install --quiet --disable-pip-version-check $local "$@"; }
+pip() { "$new/bin/python" -m pip install --quiet --disable-pip-version-check ${wheels:+--no-index --find-links "$wheels"} "$@"; }
 [ -z "$lock" ] || pip --require-hashes --requirement "$lock"
 pip --no-deps "$source"
 "$new/bin/python" -m compileall -q "$new/lib" || true

@@ -43,9 +43,11 @@ def ready(tmp_path_factory):
 
 
 def tried(name, root, *arguments, **env):
-    """What a script did; without a lock, so that nothing is fetched."""
+    """What a script did for a root whose files are closed to others (umask 077); without a lock, so that
+    nothing is fetched."""
     env = os.environ | {"ROOT": str(root), "LOCK": "", "SETTLE_S": "0"} | PYTHON | env
-    return subprocess.run([DEPLOY / name, *arguments], env=env, capture_output=True, text=True, timeout=180)
+    command = [DEPLOY / name, *arguments]
+    return subprocess.run(command, env=env, capture_output=True, text=True, timeout=180, umask=0o077)
 
 
 def script(name, root, *arguments, **env):
@@ -80,6 +82,12 @@ def test_the_installed_command_works(two_versions):
     command = [two_versions[0] / "opt/shiptwin/current/bin/twin", "--help"]
     done = subprocess.run(command, capture_output=True, text=True, cwd="/")
     assert done.returncode == 0 and "digital twin" in done.stdout
+
+
+def test_what_a_root_with_umask_077_installed_is_open_to_the_service(two_versions):
+    paths = [path for path in two_versions[0].rglob("*") if not path.is_symlink()]
+    closed = [path for path in paths if ~path.stat().st_mode & (0o005 if path.is_dir() else 0o004)]
+    assert len(paths) > 100 and not closed
 
 
 def test_settings_that_are_there_stay(two_versions):
@@ -185,8 +193,8 @@ def test_what_is_no_wheel_leaves_nothing_behind(tmp_path):
 
 @pytest.fixture(scope="module")
 def wheels(wheel, tmp_path_factory):
-    """A folder as deploy/wheels.sh makes it, with a lock of one small package of its own."""
-    folder = tmp_path_factory.mktemp("offline")
+    """A folder as deploy/wheels.sh makes it, a space in its name, with a lock of one small package of its own."""
+    folder = tmp_path_factory.mktemp("USB DISK")
     small, info = folder / "ballast_of_the_test-1.0-py3-none-any.whl", "ballast_of_the_test-1.0.dist-info"
     with zipfile.ZipFile(small, "w") as file:
         file.writestr("ballast_of_the_test.py", "WEIGHT = 1\n")
@@ -204,7 +212,7 @@ def summed(folder):
     subprocess.run("sha256sum *.whl requirements.lock > SHA256SUMS", shell=True, cwd=folder, check=True)
 
 
-def test_a_folder_of_wheels_installs_without_a_network(wheels, tmp_path):
+def test_a_folder_of_wheels_with_a_space_in_its_name_installs_without_a_network(wheels, tmp_path):
     """Test: no index can be reached. Expected: the twin and what its lock names are there."""
     summed(wheels)
     nowhere = {
@@ -244,16 +252,8 @@ def test_Q9_a_wheel_or_a_lock_that_was_tampered_with_is_not_installed(wheels, tm
 
 
 def signed(folder, key):
-    command = [
-        "openssl",
-        "dgst",
-        "-sha256",
-        "-sign",
-        key,
-        "-out",
-        folder / "SHA256SUMS.sig",
-        folder / "SHA256SUMS",
-    ]
+    sums = folder / "SHA256SUMS"
+    command = ["openssl", "dgst", "-sha256", "-sign", key, "-out", folder / "SHA256SUMS.sig", sums]
     subprocess.run(command, check=True)
 
 
@@ -268,16 +268,9 @@ def test_wheels_without_the_signature_that_the_ship_asks_for_are_not_installed(w
         key = ["openssl", "ecparam", "-genkey", "-name", "prime256v1", "-noout", "-out", tmp_path / name]
         subprocess.run(key, check=True, capture_output=True)
     (root / "etc/shiptwin").mkdir(parents=True)
-    public = [
-        "openssl",
-        "pkey",
-        "-in",
-        tmp_path / "maker",
-        "-pubout",
-        "-out",
-        root / "etc/shiptwin/release.pem",
-    ]
-    subprocess.run(public, check=True)
+    public = root / "etc/shiptwin/release.pem"
+    command = ["openssl", "pkey", "-in", tmp_path / "maker", "-pubout", "-out", public]
+    subprocess.run(command, check=True)
 
     def refused(*arguments, words="is not signed"):
         done = tried("install.sh", root, *arguments)
