@@ -146,7 +146,7 @@ def test_Q6_such_a_file_is_read_ashore_in_bounded_memory(tmp_path, count, answer
 
 def test_Q6_an_unfinished_log_of_another_recorder_is_not_cut(tmp_path):
     """Test: one chunk of 2 MB, which no twin writes. Expected: byte for byte as it was."""
-    path = tmp_path / "other.mcap"
+    path = tmp_path / "twin-000001-20261125T000000Z.mcap"
     run(BOMB, path, 70_000)
     before = path.read_bytes()
     assert "no log of the twin's" in run(RECOVERED, tmp_path) and path.read_bytes() == before

@@ -115,11 +115,30 @@ def test_a_chunk_whose_index_was_cut_off_is_kept(tmp_path: Path) -> None:
 
 
 def test_a_file_without_one_record_is_set_aside_and_never_deleted(tmp_path: Path) -> None:
-    (tmp_path / "a.mcap").write_bytes(b"")
-    (tmp_path / "b.mcap").write_bytes(b"no log at all")
+    (tmp_path / "twin-000001-x.mcap").write_bytes(b"")
+    (tmp_path / "twin-000002-x.mcap").write_bytes(b"no log at all")
     said = recover_folder(tmp_path)
     assert len(said) == 2 and all("renamed" in sentence for sentence in said)
-    assert (tmp_path / "b.unreadable").read_bytes() == b"no log at all"
+    assert (tmp_path / "twin-000002-x.unreadable").read_bytes() == b"no log at all"
+
+
+@pytest.mark.parametrize(
+    "name", ["monday.mcap", "twin-monday.mcap", "twins-000001-x.mcap", "bow-000001-x.mcap"]
+)
+def test_a_voyage_that_is_being_copied_into_the_log_folder_is_left_as_it_is(
+    tmp_path: Path, name: str
+) -> None:
+    """Test: half a voyage under a name that this log gives none of its files. Expected: byte for byte as it was."""
+    (tmp_path / name).write_bytes(whole_log()[:-500])
+    with Recorder(tmp_path) as recorder:
+        assert recorder.repaired == []
+    assert (tmp_path / name).read_bytes() == whole_log()[:-500]
+
+
+def test_a_recorder_repairs_the_logs_of_its_own_name(tmp_path: Path) -> None:
+    (tmp_path / "bow-000001-x.mcap").write_bytes(whole_log()[:-50])
+    with Recorder(tmp_path, "bow") as recorder:
+        assert len(recorder.repaired) == 1
 
 
 def test_a_log_that_somebody_is_writing_is_left_alone(tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ class Recorder:
 
     def start(self) -> None:
         """Repairs what a crash left in the folder (see `repaired`) and starts the thread."""
-        self.repaired = recover_folder(self.folder)
+        self.repaired = recover_folder(self.folder, self.name)
         self._thread.start()
 
     def write(

@@ -2,8 +2,8 @@
 
 Runs on the log folder when the recorder starts. The good part is never touched, so a repair that is itself
 cut off is simply done again. A file that another process is writing is left alone (it holds a lock), and so
-is one that no twin wrote: our chunks hold 64 kB, and what claims far more would fill the memory of the
-service that starts."""
+is one whose name is not this log's (a voyage that is being copied there), and one that no twin wrote: our
+chunks hold 64 kB, and what claims far more would fill the memory of the service that starts."""
 
 import fcntl
 import os
@@ -29,6 +29,7 @@ from twin.live.log.mcap_index import (
     text_map,
 )
 from twin.live.log.mcap_parse import Broken, TooLarge, ends_well, open_log, records, string, unpacked
+from twin.live.log.quota import own_files
 from twin.physics.maths import total
 
 MAX_BYTES = 1 << 20  # of a record, and of a chunk unpacked: sixteen times what the recorder writes
@@ -44,10 +45,11 @@ class Scan(NamedTuple):
     ended: bool = False  # whether all data is there, and only the index was cut
 
 
-def recover_folder(folder: str | Path) -> list[str]:
-    """Finishes every unfinished log in a folder; one sentence for each, of what was kept and lost."""
+def recover_folder(folder: str | Path, name: str = "twin") -> list[str]:
+    """Finishes every unfinished file of the log of this name; one sentence for each, of what was kept and
+    lost."""
     try:
-        files = sorted(Path(folder).glob("*.mcap"))
+        files = [file.path for file in own_files(Path(folder), name) if file.path.endswith(".mcap")]
     except OSError:
         return []
     return [said for file in files if (said := recover(file))]
