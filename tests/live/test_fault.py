@@ -159,6 +159,8 @@ def test_replay_of_a_faulty_voyage_names_the_fault(tmp_path, capsys):
         (["rudder", "off", "--from", "-1", "--log", VOYAGE, "-o", "o.mcap"], 2, "--from"),
         (["pause", "--pid", "1"], 2, "--for"),
         (["pause", "--pid", "99999999", "--for", "1"], 2, "no such process"),
+        (["disk", "--pid", "0", "--for", "0.01"], 2, "--pid 0: a process has a number of 1 or more"),
+        (["disk", "--pid", "-1", "--for", "0.01"], 2, "--pid -1: a process has a number of 1 or more"),
         (["bus", "stuck", "--log", VOYAGE, "-o", "o.mcap"], 2, "bus takes no kind"),
     ),
 )

@@ -56,6 +56,10 @@ def refuse(change, *words):
     assert "\n" not in str(error.value)
 
 
+def test_a_whole_number_too_long_for_a_float_is_refused():
+    refuse(lambda t: t["particulars"].update(L_pp=10**400), "particulars.L_pp", "finite")
+
+
 def test_an_unknown_effect_is_refused_with_the_nearest_name():
     refuse(lambda t: t["effects"].update(Winde={}), "Winde", "Did you mean 'Wind'", "Bank")
 

@@ -6,6 +6,7 @@ stands under [structural]; [[history]] is the ladder of what was added, on which
 error fell."""
 
 import os
+import sys
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
@@ -156,14 +157,9 @@ def value_of(entry: Any, where: str, unit: str) -> float:
     of another unit."""
     told = entry if isinstance(entry, Mapping) else {"value": entry}
     value, given = told.get("value"), told.get("unit", unit)
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float))
-        or value != value
-        or abs(value) == float("inf")
-    ):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= sys.float_info.max:
         raise SettingsError(
-            f'{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.'
+            f'{where} = {value!r:.60}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.'
         )
     if given != unit:
         raise SettingsError(f"{where}: unit {given!r}, but {unit!r} is expected. Convert the value.")

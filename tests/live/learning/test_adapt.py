@@ -149,6 +149,7 @@ def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(kvl
         '{"mark": "mark", "rows": [1, 2, 3]}',
         '{"mark": "mark", "rows": []}',
         '{"mark": "mark", "rows": [{"a": [NaN]}, {}, {}]}',
+        f'{{"mark": "mark", "rows": [{{"a": [{10**400}]}}, {{}}, {{}}]}}',
         "[" * 100_000,
     ),
 )

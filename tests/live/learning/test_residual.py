@@ -130,6 +130,8 @@ def test_M3_a_golden_output_that_is_not_met_is_caught(kvlcc2, parts):
         ("onnx_opset", 11, "opset 17, the manifest says 11"),
         ("output_bound", -1.0, "positive"),
         ("W_max", 1e-6, "norm"),
+        ("force_scale", {"X_N": 10**400, "Y_N": 1.0, "N_Nm": 1.0}, "X_N = 1000"),
+        ("spectral_norms", [10**400], "spectral_norms: not all are finite numbers"),
         ("sha256", "", "text"),
         ("schema_version", 2, "schema_version"),
         ("force_scale", {"X_N": 1.0, "Y_N": 0.0, "N_Nm": 1.0}, "positive"),

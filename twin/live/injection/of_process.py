@@ -19,6 +19,8 @@ def of_a_process(what: str, pid: int | None, start_s: float, seconds: float) -> 
             f"{what}: which process, and how long? --pid PID --for S. The twin's: systemctl "
             "show -p MainPID --value shiptwin"
         )
+    if pid < 1:  # to the kernel 0 is the caller's own group of processes, and -1 is everybody's
+        raise UsageError(f"--pid {pid}: a process has a number of 1 or more.")
     try:
         os.kill(pid, 0)
     except (ProcessLookupError, OverflowError):

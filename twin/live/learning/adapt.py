@@ -242,7 +242,7 @@ class Adaptation:
                 self.named.begin(table["effects"])
         except FileNotFoundError:
             return
-        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
             self.notes.append(f"{path}: cannot be used ({type(error).__name__}), learning begins anew")
 
     def _restore(self, rows: list[Any]) -> None:

@@ -9,8 +9,8 @@ way:
 """
 
 import json
+import sys
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 from twin.checksum import sha256_hex
@@ -166,16 +166,21 @@ def _vector(value: Any, size: int | None, name: str) -> tuple[float, ...]:
     if not isinstance(value, list) or (size is not None and len(value) != size):
         found = len(value) if isinstance(value, list) else "no"
         raise ManifestError(f"{name}: {found} numbers, {size} expected")
-    if not all(type(x) in (int, float) and isfinite(x) for x in value):
+    if not all(map(_finite, value)):
         raise ManifestError(f"{name}: not all are finite numbers")
     return tuple(float(x) for x in value)
 
 
 def _number(table: dict[str, Any], key: str) -> float:
     value: Any = table.get(key)
-    if type(value) not in (int, float) or not isfinite(value):
-        raise ManifestError(f"{key} = {value!r}: a finite number is needed")
+    if not _finite(value):
+        raise ManifestError(f"{key} = {value!r:.60}: a finite number is needed")
     return float(value)
+
+
+def _finite(value: Any) -> bool:
+    """Whether it is a number that a float can hold."""
+    return type(value) in (int, float) and abs(value) <= sys.float_info.max
 
 
 def _positive(table: dict[str, Any], key: str) -> float:
