@@ -14,7 +14,7 @@ from twin.live.keelson import messages
 from twin.live.keelson.meanings import meaning_of, unit_of
 from twin.live.keelson.messages import TABLE
 from twin.live.keelson.topics import ALIKE, FLOAT, INPUTS, OF_ACTUATORS, OUTPUTS, Output, Topic
-from twin.live.keelson.zenoh_config import MAX_BYTES, MAX_HZ
+from twin.live.keelson.zenoh_config import MAX_BYTES, BusSettings
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.readings import WORDS
 from twin.physics.actuators.actuator_channels import CHANNELS_OF
@@ -144,8 +144,9 @@ def _inputs() -> str:
     return "\n".join(
         [
             "\n## In: what the twin listens to\n",
-            f"From any source but `twin` and `twin/...`; at most {MAX_HZ:g} samples a second and {MAX_BYTES} "
-            "bytes a sample are let in. A channel is lost when its newest",
+            "From any source but `twin` and `twin/...`; of each subject the newest "
+            f"{BusSettings().depth} samples between two ticks are taken, and at most {MAX_BYTES} bytes a "
+            "sample. A channel is lost when its newest",
             "sample is older than ten of its own periods, at the latest after the time in the last column. "
             "What is outside the range is refused.\n",
             "| subject | type | unit | range | what | lost after |",

@@ -108,6 +108,15 @@ def test_I28_a_flood_on_one_subject_hands_out_the_newest_and_leaves_the_others(p
     assert sum(key == RUDDER for key, _, _ in got) == 1
 
 
+def test_two_instruments_that_speak_at_the_same_moment_are_both_heard(pair: Pair) -> None:
+    twin, sensor = pair
+    keys = {topics.key("twin", "ship", "propeller_rate_rpm", name) for name in ("port", "starboard")}
+    for key in sorted(keys):
+        sensor.publish(key, sample(60.0))
+    heard: set[str] = set()
+    until(lambda: heard.update(key for key, _, _ in twin.drain(1.0)) or heard == keys)
+
+
 def test_I27_a_sample_of_ten_megabytes_never_reaches_the_loop(pair: Pair) -> None:
     twin, sensor = pair
     sensor.publish(HEADING, bytes(10_000_000))

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from twin.errors import SettingsError
+from twin.live.keelson.topics import OF_ACTUATORS, subjects
 from twin.live.keelson.zenoh_config import BusSettings, configuration
 
 
@@ -19,6 +20,20 @@ def test_a_zenoh_file_is_obeyed_and_the_rest_stays_locked(tmp_path: Path) -> Non
     assert json.loads(config.get_json("mode")) == "client"
     assert json.loads(config.get_json("scouting/multicast/enabled")) is False
     assert json.loads(config.get_json("transport/link/rx/max_message_size")) == 262144
+
+
+def test_the_size_of_a_sample_is_limited_on_every_subject_that_can_be_subscribed_to() -> None:
+    (rule,) = json.loads(configuration(BusSettings()).get_json("low_pass_filter"))
+    limited = {key.split("/pubsub/")[1].removesuffix("/**") for key in rule["key_exprs"]}
+    assert limited == {*subjects(), *OF_ACTUATORS}
+
+
+def test_what_a_zenoh_file_sets_to_zenohs_own_default_stays_locked(tmp_path: Path) -> None:
+    file = tmp_path / "zenoh.json5"
+    file.write_text("{transport: {unicast: {max_sessions: 1000, accept_pending: 50}}}")
+    config = configuration(BusSettings(file=str(file)))
+    assert json.loads(config.get_json("transport/unicast/max_sessions")) == 32
+    assert json.loads(config.get_json("transport/unicast/accept_pending")) == 50
 
 
 @pytest.mark.parametrize("content", ["", "not json", '{"no_such_key": 1}'])

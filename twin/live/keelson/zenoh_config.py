@@ -1,8 +1,11 @@
 """Zenoh's settings: locked down unless a Zenoh file says otherwise.
 
 By default the twin listens on loopback only, finds nobody by itself (no multicast, no gossip), shares no
-memory, takes no message larger than a sensor sends and no sensor faster than a loop can use. With a router it
-is a client: two peers behind a router without gossip exchange nothing, and nothing would say so.
+memory and takes no message larger than a sensor sends. With a router it is a client: two peers behind a
+router without gossip exchange nothing, and nothing would say so.
+
+Zenoh's own limit of a rate is not used: all sources of a subject share its clock, so that of two propellers
+that speak at the same moment only one is heard. The rings of `zenoh_bus.py` bound what a loop takes.
 """
 
 import json
@@ -11,10 +14,9 @@ from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
 from twin.live.keelson import endpoint
-from twin.live.keelson.topics import subjects
+from twin.live.keelson.topics import OF_ACTUATORS, subjects
 from twin.live.signals.config import Settings
 
-MAX_HZ = 200.0  # of each subject
 MAX_BYTES = 4096  # of one sample
 MAX_NAME = 200  # bytes of [bus] base and entity
 RETRY = {"period_init_ms": 200, "period_increase_factor": 1.5, "period_max_ms": 1000}
@@ -58,7 +60,8 @@ class BusSettings(NamedTuple):
 
 
 def configuration(settings: BusSettings) -> Any:
-    """The zenoh.Config for these settings; what a Zenoh file sets stays, the rest is locked down.
+    """The zenoh.Config for these settings; what a Zenoh file sets stays, the rest is locked down. A value
+    that is Zenoh's own default counts as not set: Zenoh tells the two apart nowhere.
     SettingsError: Zenoh refuses a value, or a name or place cannot be one."""
     import zenoh
 
@@ -112,20 +115,12 @@ def _wanted(settings: BusSettings, config: Any) -> dict[str, Any]:
     if not client:
         wanted["listen/endpoints"] = [settings.listen] if settings.listen else []
     pattern = f"{settings.base}/@v0/{settings.entity}/pubsub"
-    wanted["downsampling"] = [
-        {
-            "id": "sensors",
-            "flows": ["ingress"],
-            "messages": ["put"],
-            "rules": [{"key_expr": f"{pattern}/{subject}/**", "freq": MAX_HZ} for subject in subjects()],
-        }
-    ]
     wanted["low_pass_filter"] = [
         {
             "id": "size",
             "flows": ["ingress"],
             "messages": ["put"],
-            "key_exprs": [f"{pattern}/{subject}/**" for subject in subjects()],
+            "key_exprs": [f"{pattern}/{subject}/**" for subject in (*subjects(), *OF_ACTUATORS)],
             "size_limit": MAX_BYTES,
         }
     ]

@@ -33,7 +33,12 @@ KEYS: tuple[Key, ...] = (
     Key("bus.listen", str, "tcp/127.0.0.1:7447", 'where the twin listens as a peer, "" for nowhere'),
     Key("bus.connect", list, [], "peers to connect to"),
     Key("bus.router", str, "", "a Zenoh router: makes the twin its client"),
-    Key("bus.file", str, "", "a Zenoh file (TLS, access control); what it sets is kept"),
+    Key(
+        "bus.file",
+        str,
+        "",
+        "a Zenoh file (TLS, access control); what it sets is kept, but for Zenoh's own defaults",
+    ),
     Key("log.folder", str, "logs", 'where the logs go, "" for no log'),
     Key("log.segment_mb", float, 256.0, "a new file after this size", "MB", 1.0, 4096.0),
     Key("log.segment_s", float, 900.0, "a new file after this time", "s", 10.0, 86400.0),
