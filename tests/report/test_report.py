@@ -2,11 +2,14 @@
 
 import json
 import re
+import shlex
 import subprocess
+from html import unescape
 
 import pytest
 
 from tests.chromium import CHROMIUM
+from tests.report import pages
 from twin import report
 from twin.errors import TwinError
 from twin.physics.effects import find
@@ -208,6 +211,27 @@ def test_an_hour_at_ten_hertz_is_a_page_of_a_few_megabytes_that_opens_in_two_sec
     ready = int(re.search(r'data-ready-ms="(\d+)"', dom).group(1))
     assert complaints == [] and (tmp_path / "h.html").stat().st_size < 8e6
     assert ready < 2000
+
+
+@pytest.mark.parametrize("kind", ("compare", "diagnose", "add"))
+def test_a_command_to_copy_takes_a_file_name_as_one_word_whatever_stands_in_it(
+    kind, sailed, stream, kvlcc2, tmp_path
+):
+    """Test: names with a space and with what a shell would run. Expected: a shell reads back the names."""
+    s, names = sailed(stream), ("MV Alma.toml", "monday $(reboot).mcap", "it's.toml")
+    result = {"compare": {}, "diagnose": pages.diagnosis(s.track.name), "add": pages.addition()}[kind]
+    files = {"ship": names[0], "voyages": [names[1]], "better": names[2]}
+    result = compare([s], Model.of(kvlcc2)).result | result | {"output": names[0], "files": files}
+    report.write(tmp_path / "page.html", kind, result, [s.track], Model.of(kvlcc2), before=Model.of(kvlcc2))
+    commands = commands_of(opened(tmp_path / "page.html")[0])
+    said = {word for words in commands for word in words}
+    assert said >= {"compare": set(names[:2]), "diagnose": set(names), "add": set(names[:2])}[kind]
+
+
+def commands_of(dom):
+    """The words that a shell makes of each command on a page that was opened."""
+    found = re.findall(r'<div class="command"><code>(.*?)</code>', dom)
+    return [shlex.split(unescape(text)) for text in found]
 
 
 def test_a_page_that_cannot_be_written_is_one_clear_line(sailed, make, kvlcc2, tmp_path):

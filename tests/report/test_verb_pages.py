@@ -10,13 +10,17 @@ import pytest
 import twin
 from tests.report import pages
 from tests.report.boat import straight_with_a_turn
+from tests.report.test_report import commands_of, opened
 from tests.thorough import thorough
 from twin import cli
 from twin.commands.story import MONDAY, SHIP
+from twin.live.bridge.scene import MODES
+from twin.live.guard import HYBRID, INVALID, PHYSICS, RECKONING, STARTING
 from twin.live.replay_record import MOMENTS_KEPT, SPANS, Kept, Spans
 from twin.recording.write import write_voyage
 from twin.report.curves import Curve, Curves, drawn, thinned
 from twin.report.history_page import history_page, steps_of
+from twin.report.page import PLOTS, html
 from twin.report.training_page import training_page
 
 BOAT = ["180", "30", "10.5"]
@@ -138,6 +142,24 @@ def test_the_page_of_a_replay_holds_what_the_verb_says(replayed):
     assert modes.keys() == told["modes"].keys()
     assert sum(modes.values()) == pytest.approx(told["duration_s"], abs=2.0)
     assert [row["reason"] for row in page["reasons"]] == list(told["reasons"])
+
+
+def test_the_page_of_a_replay_shows_every_mode_in_the_colour_of_the_viewer(replayed):
+    _, page, _ = replayed
+    assert {row["mode"]: row["level"] for row in page["modes"]} == {
+        row["mode"]: MODES[row["mode"]][0] for row in page["modes"]
+    }
+    assert MODES.keys() == {STARTING, HYBRID, PHYSICS, RECKONING, INVALID}
+
+
+def test_the_commands_of_a_replays_page_take_a_file_name_as_one_word(replayed, tmp_path):
+    _, page, _ = replayed
+    names = {"MV Alma.toml", "monday $(reboot).mcap"}
+    told = page["result"] | {"files": {"ship": "MV Alma.toml"}, "log": "monday $(reboot).mcap"}
+    (tmp_path / "page.html").write_text(html(page | {"result": told}, (*PLOTS, "replay.js")))
+    commands = commands_of(opened(tmp_path / "page.html")[0])
+    words = {words[1]: set(words) for words in commands}
+    assert "MV Alma.toml" in words["tube"] and names < words["compare"]
 
 
 def test_the_page_of_a_replay_shows_the_estimate_beside_what_was_measured(replayed):

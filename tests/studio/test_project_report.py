@@ -9,9 +9,10 @@ import time
 import pytest
 
 from tests.chromium import FAINT
+from tests.report.test_report import commands_of, opened
 from twin.studio.jobs import Jobs
 from twin.studio.project import Project
-from twin.studio.project_report import content
+from twin.studio.project_report import content, page
 
 DATA = re.compile(r'<script id="data" type="application/json">(.*?)</script>', re.DOTALL)
 
@@ -50,6 +51,15 @@ def test_a_project_in_which_nothing_was_done_says_so_and_what_to_do(tmp_path):
         "monday.mcap": "voyage",
         "tuesday.mcap": "held_out",
     }
+
+
+def test_the_commands_for_a_project_take_the_ships_file_as_one_word(tmp_path):
+    project = Project(tmp_path)
+    project.take_demo()
+    (tmp_path / "tanker.toml").rename(tmp_path / "MV Alma.toml")
+    (tmp_path / "project.html").write_text(page(project))
+    commands = commands_of(opened(tmp_path / "project.html")[0])
+    assert {words[1] for words in commands if "MV Alma.toml" in words} == {"compare", "diagnose"}
 
 
 def test_the_page_holds_the_answers_numbers_and_is_read_in_both_lights(compared, tab):

@@ -1,7 +1,7 @@
 // What diagnose and add show beside the common parts: ranking, next manoeuvre, what was fitted, the ladder.
 function addCommand(names) {
   const f = RESULT.files || {};
-  return `twin add ${[].concat(names).join(" ")} --ship ${f.ship || "SHIP.toml"} --voyage ${(f.voyages || ["VOYAGE.mcap"]).join(" ")} -o ${f.better || "better.toml"}`;
+  return `twin add ${[].concat(names).join(" ")} --ship ${quoted(f.ship || "SHIP.toml")} --voyage ${(f.voyages || ["VOYAGE.mcap"]).map(quoted).join(" ")} -o ${quoted(f.better || "better.toml")}`;
 }
 
 function rankingSection() {

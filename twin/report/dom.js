@@ -69,6 +69,9 @@ function printedLight(redrawn) {
   addEventListener("afterprint", () => { root.dataset.theme = shown; root.classList.remove("paper"); redrawn(); });
 }
 
+/** A file's name as one word of a shell. */
+const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+
 /** A command with a button that copies it. */
 function command(text) {
   const button = el("button", { "aria-live": "polite", onclick: () => copy(text, button) }, "copy");

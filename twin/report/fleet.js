@@ -14,7 +14,6 @@ const slope = (trend, unit) => {
   return `${signed(t.slope)} a ${t.per} (${signed(t.low95)} to ${signed(t.high95)})`;
 };
 const badge = (state) => { const [mood, word] = STATES[state] || ["fair", state]; return el(`span.badge.${mood}`, null, word); };
-const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 
 function head() {
   const v = RESULT.voyages, first = RESULT.ships[0], wrong = RESULT.counts.missing;

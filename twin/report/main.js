@@ -16,9 +16,9 @@ function head() {
 }
 
 function next() {
-  const f = RESULT.files || {}, rest = `${(f.voyages || ["VOYAGE.mcap"]).join(" ")} --ship ${f.ship || "SHIP.toml"}`;
+  const f = RESULT.files || {}, rest = `${(f.voyages || ["VOYAGE.mcap"]).map(quoted).join(" ")} --ship ${quoted(f.ship || "SHIP.toml")}`;
   if (DATA.kind === "compare") return section("Next", "which physical effect is missing?", command(`twin diagnose ${rest} --report diagnose.html`));
-  if (DATA.kind === "add" && RESULT.output) return section("Next", "the better model against the same measurements", command(`twin compare ${(f.judged || f.voyages || ["VOYAGE.mcap"]).join(" ")} --ship ${RESULT.output}`));
+  if (DATA.kind === "add" && RESULT.output) return section("Next", "the better model against the same measurements", command(`twin compare ${(f.judged || f.voyages || ["VOYAGE.mcap"]).map(quoted).join(" ")} --ship ${quoted(RESULT.output)}`));
   return null;
 }
 

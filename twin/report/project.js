@@ -30,7 +30,7 @@ function voyagesSection() {
 }
 
 function errorSections() {
-  if (!RESULT.horizons.length) return [section("Error before and now", null, el("p.note", null, "Nothing was compared with measurements yet."), DATA.file ? command(`twin compare VOYAGE.mcap --ship ${DATA.file}`) : null)];
+  if (!RESULT.horizons.length) return [section("Error before and now", null, el("p.note", null, "Nothing was compared with measurements yet."), DATA.file ? command(`twin compare VOYAGE.mcap --ship ${quoted(DATA.file)}`) : null)];
   const error = errorsSection();
   error.append(...from(DATA.now).filter(Boolean));
   return [error, whereSection()];
@@ -50,7 +50,7 @@ function calibrationSection() {
 }
 
 function diagnosisSections() {
-  if (!DATA.diagnosed) return [section("Which effect is missing", null, el("p.note", null, "Nothing was diagnosed yet."), DATA.file ? command(`twin diagnose VOYAGE.mcap --ship ${DATA.file}`) : null)];
+  if (!DATA.diagnosed) return [section("Which effect is missing", null, el("p.note", null, "Nothing was diagnosed yet."), DATA.file ? command(`twin diagnose VOYAGE.mcap --ship ${quoted(DATA.file)}`) : null)];
   const ranking = rankingSection();
   const added = DATA.added.length ? el("p.good", null, `Added to the model since: ${DATA.added.join(", ")}.`) : null;
   ranking.querySelector(".head").after(el("p", null, DATA.diagnosed.sentence), added || "", ...from(DATA.diagnosed).filter(Boolean));

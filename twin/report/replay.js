@@ -1,5 +1,4 @@
 // A replay: how far the predictions were off and what was promised of them, health over time, estimate against measurement.
-const MODES = { "physics and learned force": "good", "physics only": "model", degraded: "fair", invalid: "bad" };
 
 function head() {
   const [mood, word] = badge();
@@ -16,7 +15,7 @@ function badge() {
 function predictionsSection() {
   const tube = RESULT.tube.map((c) => el("tr", null, el("td", null, `${asGiven(c.horizon_s)} s`), share(c.place_inside, c.level), share(c.heading_inside, c.level), el("td.n", null, percent(c.level)), el("td.n", null, num(c.place_radius_m)), el("td.n", null, num(c.heading_deg, 2)), el("td.n", null, num(c.place_score_m)), el("td.n", null, num(c.heading_score_deg, 2)), el("td.n", null, String(c.judged))));
   const sight = RESULT.foresight.map((f) => el("tr", null, el("td", null, `${asGiven(f.horizon_s)} s`), el("td.n", null, num(f.position_m)), el("td.n", null, num(f.heading_deg, 2)), el("td.n", null, String(f.windows))));
-  const kept = tube.length ? [table(["ahead", ">places inside", ">headings inside", ">promised", ">tube [m]", ">[deg]", ">interval score [m]", ">[deg]", ">predictions"], tube), el("p.note", null, "Helm and engine held meanwhile; in the plots below the grey parts are predictions during which they moved, for which nothing is promised. Interval score: the tube's half width, and ten times or more what an error exceeds it by; smaller is better.")] : [el("p.note", null, "This ship file has no [tube], so predictions carry no promise. Made from voyages that the model has not seen:"), command(`twin tube VOYAGE.mcap --ship ${RESULT.files.ship} -o SHIP2.toml`)];
+  const kept = tube.length ? [table(["ahead", ">places inside", ">headings inside", ">promised", ">tube [m]", ">[deg]", ">interval score [m]", ">[deg]", ">predictions"], tube), el("p.note", null, "Helm and engine held meanwhile; in the plots below the grey parts are predictions during which they moved, for which nothing is promised. Interval score: the tube's half width, and ten times or more what an error exceeds it by; smaller is better.")] : [el("p.note", null, "This ship file has no [tube], so predictions carry no promise. Made from voyages that the model has not seen:"), command(`twin tube VOYAGE.mcap --ship ${quoted(RESULT.files.ship)} -o SHIP2.toml`)];
   const ahead = sight.length ? [el("p.note", { style: { marginTop: "12px" } }, "Open loop from the estimate, under the recorded helm, engine and weather (mean absolute error):"), table(["ahead", ">place [m]", ">heading [deg]", ">starts"], sight)] : [];
   return section("Predictions against what came", null, ...kept, ...ahead);
 }
@@ -30,7 +29,7 @@ function share(x, level) {
 /** Modes and alarms: a bar for each stretch of time. */
 function healthSection() {
   const v = DATA.voyages[0], rows = [];
-  for (const { mode, spans } of DATA.modes) rows.push(...lane(mode, spans, RESULT.modes[mode] || 0, MODES[mode] || "fair", v));
+  for (const { mode, level, spans } of DATA.modes) rows.push(...lane(mode, spans, RESULT.modes[mode] || 0, level, v));
   for (const { reason, spans } of DATA.reasons) rows.push(...lane(reason, spans, RESULT.reasons[reason], "residual", v));
   const marks = [v.start_s, (v.start_s + v.end_s) / 2, v.end_s].map((t, i) => el("span", { style: { left: `${50 * i}%`, transform: `translateX(-${50 * i}%)` } }, clock(t)));
   return section("Modes and alarms", "over the whole voyage; a bar where it stood", el(".lanes", null, rows, el("div"), el(".ticks", null, marks)));
@@ -56,7 +55,7 @@ decode(v);
 [view.from, view.to] = [v.start_s, v.end_s];
 const plots = plotsSection(v), map = v.track ? section("Track", null, trackPlot(v, LINES.filter((l) => v.track.lines[l.key]))) : null;
 if (map) map.querySelector(".head").append(legend());
-const further = section("Next", "the model against the same measurements, open loop", command(`twin compare ${RESULT.log} --ship ${RESULT.files.ship} --report compare.html`));
+const further = section("Next", "the model against the same measurements, open loop", command(`twin compare ${quoted(RESULT.log)} --ship ${quoted(RESULT.files.ship)} --report compare.html`));
 document.getElementById("page").append(...[head(), predictionsSection(), healthSection(), plots, map, further, provenance()].filter(Boolean), el("footer", null, "shiptwin · this page is whole: it asks nothing of any network"));
 live();
 document.documentElement.dataset.readyMs = "0";

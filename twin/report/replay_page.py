@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.live.bridge.scene import MODES
 from twin.live.log_replay import Summary
 from twin.live.observer.estimate import STATES
 from twin.live.replay_record import Kept, ReplayRecord
@@ -56,7 +57,10 @@ def content(summary: Summary, record: ReplayRecord) -> dict[str, Any]:
             "lines": lines,
             "longest_s": max(ahead, default=60.0),
             "result": result,
-            "modes": [{"mode": word, "spans": _from(s, start_s)} for word, s in record.modes.of.items()],
+            "modes": [
+                {"mode": word, "level": MODES[word][0], "spans": _from(s, start_s)}
+                for word, s in record.modes.of.items()
+            ],
             "reasons": [
                 {"reason": word, "spans": _from(record.reasons.of[word], start_s)}
                 for word in summary.reasons
