@@ -11,19 +11,15 @@ to run on.
 """
 
 import argparse
-import hashlib
-import itertools
 import json
-import os
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import torch
 
+from export.residual_network import CALM, ResidualNetwork
 from twin.live.learning.learned_force import scale_of
-from twin.live.learning.manifest import SCHEMA_VERSION, hashed
-from twin.live.learning.residual import ship_hash
 from twin.live.log.log_rows import read_rows
 from twin.live.observer.dynamics import KnownDynamics
 from twin.live.signals.channels import BY_NAME
@@ -32,8 +28,6 @@ from twin.physics.ship import Ship, load
 from twin.physics.state import Force, Situation
 from twin.physics.zeta import inputs
 
-NAMES = ("surge", "sway", "yaw", "rudder", "propeller")
-LAYERS, FEATURES, COMPONENTS, OPSET = 4, 64, 4, 17
 STEP_S, LAM = 1.0, 0.15  # grid [s]; filter [1/s]
 KERNEL = 64  # steps of the filter that are kept: the rest is below 1e-4
 RIDGE, RATE, ROUNDS, BATCH = 2e-3, 2e-3, 1500, 8
@@ -46,40 +40,6 @@ class Run(NamedTuple):
     name: str
     zeta: np.ndarray
     d: np.ndarray
-
-
-class Trunk(torch.nn.Module):
-    """zeta -> phi -> W phi, in units of the force scale."""
-
-    offset: torch.Tensor  # mean of each input
-    scale: torch.Tensor  # and its spread
-
-    def __init__(self, offset: np.ndarray, scale: np.ndarray):
-        super().__init__()
-        sizes = [len(NAMES)] + [FEATURES] * LAYERS
-        self.layers = torch.nn.ModuleList(torch.nn.Linear(a, b) for a, b in itertools.pairwise(sizes))
-        for layer in self.linear_layers():
-            torch.nn.init.xavier_uniform_(layer.weight)
-            torch.nn.init.zeros_(layer.bias)
-        self.W = torch.nn.Parameter(torch.zeros(3, FEATURES))
-        self.register_buffer("offset", torch.tensor(offset, dtype=torch.float32))
-        self.register_buffer("scale", torch.tensor(scale, dtype=torch.float32))
-
-    def linear_layers(self) -> list[torch.nn.Linear]:
-        """The trunk's layers, the first one first."""
-        return [layer for layer in self.layers if isinstance(layer, torch.nn.Linear)]
-
-    def phi(self, zeta: torch.Tensor) -> torch.Tensor:
-        """(..., 64) of zeta (..., inputs), not yet scaled."""
-        x = (zeta - self.offset) / self.scale
-        for layer in self.layers:
-            z = layer(x)
-            x = z * torch.sigmoid(z)
-        return x
-
-    def forward(self, zeta: torch.Tensor) -> torch.Tensor:
-        """(..., 3) in units of the force scale."""
-        return self.phi(zeta) @ self.W.T
 
 
 def read(path: Path, ship: Ship) -> Run:
@@ -95,7 +55,7 @@ def read(path: Path, ship: Ship) -> Run:
     left = np.diff(nu, axis=0) / STEP_S - 0.5 * (rates[1:] + rates[:-1])
     force = known.force_for(*left.T)
     d = np.stack([f / scale for f, scale in zip(force, scale_of(ship), strict=True)], axis=1)
-    zeta = np.stack([np.broadcast_to(z, grid.shape) for z in inputs(NAMES, s, ship)], axis=1)
+    zeta = np.stack([np.broadcast_to(z, grid.shape) for z in inputs(CALM, s, ship)], axis=1)
     return Run(path.stem, 0.5 * (zeta[1:] + zeta[:-1]), low_passed(torch.tensor(d)).numpy())
 
 
@@ -120,26 +80,32 @@ def low_passed(x: torch.Tensor) -> torch.Tensor:
     return out.transpose(1, 2).reshape(x.shape)
 
 
-def train(runs: list[Run], seed: int = 42) -> Trunk:
-    """The trunk and its last layer on windows of the runs."""
+def train(runs: list[Run], ship: Ship, seed: int = 42) -> ResidualNetwork:
+    """The network on windows of the runs, its last layer from nothing; its bound is what the runs need."""
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     rng = np.random.default_rng(seed)
-    zeta = np.concatenate([run.zeta for run in runs])
-    trunk = Trunk(zeta.mean(0), zeta.std(0) + 1e-3)
+    network = ResidualNetwork(ship, CALM, np.concatenate([run.zeta for run in runs]))
+    torch.nn.init.zeros_(network.last.weight)
     size = torch.tensor(np.concatenate([run.d[KERNEL:] for run in runs]).std(0), dtype=torch.float32)
-    optimiser = torch.optim.Adam(trunk.parameters(), lr=RATE, weight_decay=1e-5)
+    optimiser = torch.optim.Adam(network.parameters(), lr=RATE, weight_decay=1e-5)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, ROUNDS)
     for _ in range(ROUNDS):
         windows = [_window(runs[rng.integers(len(runs))], rng) for _ in range(BATCH)]
         z, d = (torch.tensor(np.stack(x), dtype=torch.float32) for x in zip(*windows, strict=True))
-        f = trunk(z)
+        f = network.f(z)
         loss = (((low_passed(f) - d)[:, KERNEL:] / size) ** 2).mean() + RIDGE * ((f / size) ** 2).mean()
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
         schedule.step()
-    return trunk
+    network.bind(zeta_of(runs))
+    return network
+
+
+def zeta_of(runs: list[Run]) -> torch.Tensor:
+    """(N, 5), dimensionless: the inputs of all runs."""
+    return torch.tensor(np.concatenate([run.zeta for run in runs]), dtype=torch.float32)
 
 
 def _window(run: Run, rng: np.random.Generator, steps: int = 4 * KERNEL) -> tuple[np.ndarray, np.ndarray]:
@@ -161,93 +127,19 @@ def _on(grid: np.ndarray, time_s: np.ndarray, values: np.ndarray, wraps: float) 
     return np.where(many, mean, np.interp(grid, t, x))
 
 
-def explained(trunk: Trunk, runs: list[Run]) -> list[float]:
-    """Share of the mean square of d that the network takes away, by axis."""
+def explained(network: ResidualNetwork, runs: list[Run]) -> list[float]:
+    """Share of the mean square of d that the network takes away, by axis, within its range and bound."""
     with torch.no_grad():
-        pairs = [
-            (low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:])
-            for run in runs
-        ]
+        pairs = [(low_passed(network.f(zeta_of([run]))).numpy()[KERNEL:], run.d[KERNEL:]) for run in runs]
     left = np.concatenate([d - f for f, d in pairs])
     whole = np.concatenate([d for _, d in pairs])
     return [float(x) for x in 1.0 - (left**2).mean(0) / (whole**2).mean(0)]
 
 
-def trunk_onnx(trunk: Trunk) -> bytes:
-    """The trunk as an ONNX file: zeta, already scaled, (1, 5) -> phi (1, 64)."""
-    from onnx import TensorProto, checker, helper, numpy_helper
-
-    nodes, weights, source = [], [], "zeta"
-    for i, layer in enumerate(trunk.linear_layers()):
-        out = "phi" if i == LAYERS - 1 else f"x{i}"
-        w, b = layer.weight.detach().numpy(), layer.bias.detach().numpy()
-        weights += [numpy_helper.from_array(w, f"w{i}"), numpy_helper.from_array(b, f"b{i}")]
-        nodes += [
-            helper.make_node("Gemm", [source, f"w{i}", f"b{i}"], [f"z{i}"], transB=1),
-            helper.make_node("Sigmoid", [f"z{i}"], [f"s{i}"]),
-            helper.make_node("Mul", [f"z{i}", f"s{i}"], [out]),
-        ]
-        source = out
-    ends = [
-        helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size])
-        for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))
-    ]
-    graph = helper.make_graph(nodes, "trunk", ends[:1], ends[1:], weights)
-    model = helper.make_model(
-        graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin"
-    )
-    checker.check_model(model)
-    return bytes(model.SerializeToString())
-
-
-def manifest(
-    trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]
-) -> dict[str, Any]:
-    """The manifest of docs/residual.md."""
-    zeta = np.concatenate([run.zeta for run in runs])
-    low, high = zeta.min(0), zeta.max(0)
-    with torch.no_grad():
-        phi = trunk.phi(torch.tensor(zeta, dtype=torch.float32)).numpy().astype(float)
-        force = phi @ trunk.W.numpy().T.astype(float)
-    centred = phi - phi.mean(0)
-    _, _sizes, directions = np.linalg.svd(centred[:: max(len(centred) // 20000, 1)], full_matrices=False)
-    deviations = (centred @ directions[:COMPONENTS].T).std(0)
-    offset, scale = trunk.offset.numpy(), trunk.scale.numpy()
-    golden = (zeta[:: len(zeta) // 5][:5] - offset) / scale
-    with torch.no_grad():
-        answers = trunk.phi(torch.tensor(golden * scale + offset, dtype=torch.float32)).numpy()
-    W, S = trunk.W.detach().numpy(), scale_of(ship)
-    return {
-        "schema_version": SCHEMA_VERSION,
-        "sha256": hashlib.sha256(model).hexdigest(),
-        "onnx_opset": OPSET,
-        "ship": {"name": ship.name, "hash": ship_hash(ship)},
-        "inputs": [
-            {"name": n, "unit": "-", "scale": float(s), "offset": float(o), "low": float(a), "high": float(b)}
-            for n, s, o, a, b in zip(NAMES, scale, offset, low, high, strict=True)
-        ],
-        "features": FEATURES,
-        "W": [[float(x) for x in row] for row in W],
-        "W_max": float(1.5 * np.linalg.norm(W)),
-        "force_scale": {"X_N": float(S.X), "Y_N": float(S.Y), "N_Nm": float(S.N)},
-        "output_bound": float(1.2 * np.quantile(np.linalg.norm(force, axis=1), 0.999)),
-        "whitening": {
-            "mean": [float(x) for x in phi.mean(0)],
-            "components": [[float(x) for x in row] for row in directions[:COMPONENTS] / deviations[:, None]],
-        },
-        "spectral_norms": [
-            float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in trunk.linear_layers()
-        ],
-        "golden": {
-            "inputs": [[float(x) for x in row] for row in golden],
-            "outputs": [[float(x) for x in row] for row in answers],
-        },
-        "training": about,
-    }
-
-
 def main() -> int:
     """`python -m export.first`: train, judge on held-out voyages, write; the exit code."""
+    from export import to_onnx  # needs onnx, which reading and training do not
+
     parser = argparse.ArgumentParser(prog="python -m export.first", description=__doc__.split("\n")[0])
     parser.add_argument("voyages", nargs="+", type=Path, metavar="VOYAGE.mcap")
     parser.add_argument("--ship", default="kvlcc2")
@@ -257,26 +149,17 @@ def main() -> int:
     ship = load(args.ship)
     runs = [read(path, ship) for path in sorted(args.voyages)]
     held_out, used = runs[::HELD_OUT], [run for i, run in enumerate(runs) if i % HELD_OUT]
-    trunk = train(used, args.seed)
+    network = train(used, ship, args.seed)
     about = {
         "what": "first residual: calm water, filtered regression, no roll-out",
         "seed": args.seed,
         "voyages": [run.name for run in used],
         "held_out": [run.name for run in held_out],
-        "explained": dict(zip(("surge", "sway", "yaw"), explained(trunk, used), strict=True)),
-        "explained_held_out": dict(zip(("surge", "sway", "yaw"), explained(trunk, held_out), strict=True)),
+        "explained": dict(zip(("surge", "sway", "yaw"), explained(network, used), strict=True)),
+        "explained_held_out": dict(zip(("surge", "sway", "yaw"), explained(network, held_out), strict=True)),
     }
-    model = trunk_onnx(trunk)
-    for path, data in (
-        (
-            args.output.with_suffix(".json"),
-            json.dumps(hashed(manifest(trunk, model, ship, used, about)), indent=1).encode(),
-        ),
-        (args.output, model),
-    ):
-        aside = path.with_name(f".{path.name}.part")
-        aside.write_bytes(data)
-        os.replace(aside, path)
+    model = to_onnx.trunk(network)
+    to_onnx.write(args.output, model, to_onnx.manifest(network, model, zeta_of(used), about))
     print(json.dumps({key: about[key] for key in ("explained", "explained_held_out")}))
     return 0
 

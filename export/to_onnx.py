@@ -3,7 +3,6 @@ else in the manifest."""
 
 import hashlib
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ import torch
 from onnx import TensorProto, checker, helper, numpy_helper
 
 from export.residual_network import WIDTH, ResidualNetwork
+from twin import whole
 from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.physics.zeta import ZETA
@@ -122,11 +122,7 @@ def whitening(phi: np.ndarray) -> dict[str, Any]:
 
 
 def write(path: Path, model: bytes, table: dict[str, Any]) -> None:
-    """Both files, aside and renamed, the manifest last: the twin believes neither without the other."""
-    for target, content in (
-        (path, model),
-        (path.with_suffix(".json"), (json.dumps(hashed(table), indent=1) + "\n").encode()),
-    ):
-        aside = target.with_name(f".{target.name}.part")
-        aside.write_bytes(content)
-        os.replace(aside, target)
+    """Both files, each whole or not at all, the manifest last: the twin believes neither without the other.
+    TwinError: one cannot be written."""
+    whole.write_bytes(path, model)
+    whole.write(path.with_suffix(".json"), json.dumps(hashed(table), indent=1) + "\n")

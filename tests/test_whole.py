@@ -1,5 +1,6 @@
 """Files that are there whole or not at all."""
 
+import errno
 import os
 import stat
 from argparse import Namespace
@@ -17,6 +18,17 @@ def test_what_was_there_is_replaced_and_nothing_else_stays(tmp_path):
     (tmp_path / "x.toml").write_text("old")
     whole.write(tmp_path / "x.toml", "new\n")
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("x.toml", "new\n")]
+
+
+def test_bytes_that_do_not_fit_on_the_disk_leave_the_old_file_and_nothing_beside_it(tmp_path, monkeypatch):
+    def full(_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    whole.write_bytes(tmp_path / "x.onnx", b"\x00old")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(TwinError, match="No space left on device"):
+        whole.write_bytes(tmp_path / "x.onnx", b"\x00new")
+    assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("x.onnx", b"\x00old")]
 
 
 def test_a_pipe_is_written_into_and_no_file_takes_its_place(tmp_path):

@@ -63,17 +63,22 @@ def _cannot(path: Path, why: str | None, option: str) -> TwinError:
 
 
 def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
+    """The same as `write_bytes`, of a text in UTF-8."""
+    write_bytes(path, text.encode(), option)
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes, option: str = "-o") -> None:
     """Write aside, to the disk, and rename into place; TwinError (exit code 1) when that cannot be done, and
     nothing is left behind.
     `option`: what names the file on the command line."""
     path = Path(path)
     if path.exists() and not path.is_file():  # a device or a pipe: a rename would put a file in its place
-        _into(path, text, option)
+        _into(path, data, option)
         return
     aside = path.parent / f".{path.name}.{os.urandom(6).hex()}"  # ASIDE
     try:
-        with open(aside, "x", encoding="utf-8") as file:
-            file.write(text)
+        with open(aside, "xb") as file:
+            file.write(data)
             file.flush()
             os.fsync(file.fileno())
         os.chmod(aside, 0o644)
@@ -84,9 +89,9 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
         raise _cannot(path, error.strerror, option) from None
 
 
-def _into(path: Path, text: str, option: str) -> None:
+def _into(path: Path, data: bytes, option: str) -> None:
     try:
-        path.write_text(text, encoding="utf-8")
+        path.write_bytes(data)
     except OSError as error:
         raise _cannot(path, error.strerror, option) from None
 
