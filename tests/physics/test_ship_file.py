@@ -5,6 +5,7 @@ import pytest
 from twin.errors import SettingsError
 from twin.physics.effects import BUILT_IN, find
 from twin.physics.ship import bundled, from_table, load, save, to_table
+from twin.physics.ship_file import load_actuators
 
 GOOD = "kvlcc2"
 
@@ -54,6 +55,14 @@ def refuse(change, *words):
     for word in ("my.toml", *words):
         assert word in str(error.value), str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_file_without_actuators_is_refused_with_what_to_add(tmp_path):
+    (tmp_path / "hull.toml").write_text('name = "hull"\n')
+    with pytest.raises(
+        SettingsError, match=r"Add one table \[\[actuators\]\] for each propeller or thruster"
+    ):
+        load_actuators(tmp_path / "hull.toml")
 
 
 def test_a_whole_number_too_long_for_a_float_is_refused():

@@ -12,6 +12,7 @@ from bench.bundled import recorded
 from bench.reference import SeaCase, simulate
 from twin.cli import main
 from twin.commands.story import SHIP
+from twin.physics.maths import RAD
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
@@ -113,7 +114,6 @@ def diagnosed(asked):
     return lambda name: deepcopy(asked(name)[0])
 
 
-DEG = 180.0 / np.pi
 STEP_S = 320.0 / 7.97388 / 32.0  # the study's own grid for this ship
 
 
@@ -168,19 +168,19 @@ def sail(
     columns = {
         "north_m": x,
         "east_m": y,
-        "heading_true_north_deg": np.mod(psi * DEG, 360.0),
+        "heading_true_north_deg": np.mod(psi * RAD, 360.0),
         "surge_velocity_mps": u,
         "sway_velocity_mps": v,
-        "yaw_rate_degps": r * DEG,
+        "yaw_rate_degps": r * RAD,
         "surge_velocity_through_water_mps": u_r,
         "sway_velocity_through_water_mps": v_r,
-        "rudder_angle_deg": rudder * DEG,
+        "rudder_angle_deg": rudder * RAD,
         "propeller_rate_rpm": n * 60.0,
     }
     if wind is not None:
         columns |= {
             "true_wind_speed_mps": np.full(t.size, wind),
-            "true_wind_direction_deg": np.mod((to - np.pi) * DEG, 360.0),
+            "true_wind_direction_deg": np.mod((to - np.pi) * RAD, 360.0),
         }
     return Voyage(name, t, columns, {"start_time_utc": f"2026-05-0{1 + seed % 9}T08:00:00Z"})
 

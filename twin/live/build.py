@@ -30,9 +30,7 @@ from twin.physics.ship import load as load_ship
 
 CERTIFY = "from twin.live.build import certify_aside; certify_aside{!r}"
 LATENESS = 1.05  # periods within which a tick still counts as one
-NO_THEOREM = (
-    "none for a ship of actuators yet: the slopes of its theorem are those of one rudder and one shaft"
-)
+NO_THEOREM = "none, as its proof covers one propeller with one rudder only"
 CERTIFY_S = 20.0  # the longest the service's start waits for a certificate
 
 

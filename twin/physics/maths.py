@@ -8,6 +8,8 @@ import sys
 from collections.abc import Iterable
 from typing import Any
 
+DEG = math.pi / 180.0  # one degree [rad]
+RAD = 180.0 / math.pi  # one radian [deg]
 _FLOATS = (float, int)
 
 

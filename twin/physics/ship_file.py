@@ -65,7 +65,9 @@ def load_actuators(path: str | os.PathLike[str]) -> tuple[Actuator, ...]:
         why = getattr(error, "strerror", None) or " ".join(str(error).split())[:200]
         raise SettingsError(f"{path}: cannot be read as TOML ({why}).") from None
     if not table.get("actuators"):
-        raise SettingsError(f"{path}: holds no [[actuators]]. A sail is none that this twin knows.")
+        raise SettingsError(
+            f"{path}: holds no [[actuators]]. Add one table [[actuators]] for each propeller or thruster."
+        )
     return read_actuators(table["actuators"], f"{path}: ", value_of)[0]
 
 

@@ -161,7 +161,7 @@ def test_N2_a_router_that_dies_is_noticed_and_its_return_as_well() -> None:
         until(lambda: twin.state.connected)
         session.close()
         assert until(lambda: not twin.state.connected) < 1.0
-        assert "the router out of reach" in twin.state.alarm and twin.state.outages == 1
+        assert "the router out of reach for " in twin.state.alarm and twin.state.outages == 1
         twin.publish(HEADING, sample(1.0))
         session = router(port)
         try:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.study.conftest import DEG
 from tests.thorough import one_of, thorough
 from twin.physics.effects import catalogue
 from twin.physics.effects.sensor_delay import SensorDelay
+from twin.physics.maths import RAD
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
@@ -49,11 +49,11 @@ def late_by(boat):
         columns = {
             "north_m": np.interp(t - late_s, t, x),
             "east_m": np.interp(t - late_s, t, y),
-            "heading_true_north_deg": np.mod(psi * DEG, 360.0),
+            "heading_true_north_deg": np.mod(psi * RAD, 360.0),
             "surge_velocity_mps": shown.real,
             "sway_velocity_mps": shown.imag,
-            "yaw_rate_degps": r * DEG,
-            "rudder_angle_deg": rudder * DEG,
+            "yaw_rate_degps": r * RAD,
+            "rudder_angle_deg": rudder * RAD,
             "propeller_rate_rpm": n * 60.0,
         }
         return Voyage("agile", t, columns, {"velocity_frame": "course"})

@@ -202,9 +202,9 @@ class Link:
             )
         if self.peers or not (self.outages or client):
             return ""
-        since = f"{now_s - self._lost_at:.0f} s ago" if self._lost_at else "the start"
+        since = f"for {now_s - self._lost_at:.0f} s" if self._lost_at else "since the start"
         who = "the router" if client else "everybody"
-        return f"bus: {who} out of reach since {since}; it comes back by itself, the twin goes on meanwhile"
+        return f"bus: {who} out of reach {since}; it comes back by itself, the twin goes on meanwhile"
 
     def close(self) -> None:
         """Close the session."""

@@ -6,10 +6,11 @@ A channel's name is its CSV column, its field in the wide log record and, where 
 
 import re
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf
 from typing import Any
 
 from twin.physics.actuators.actuator_channels import CHANNELS_OF, attribute_of
+from twin.physics.maths import DEG as DEG
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +37,6 @@ class Channel:
         """By how much two readings of one angle may differ; 0 for a number on the line."""
         return self.wraps or self.turn
 
-
-DEG = pi / 180.0
 
 CHANNELS: tuple[Channel, ...] = (
     Channel("north_m", "x", 1.0, -1e9, 1e9, 60.0, doc="position north of the voyage's datum"),

@@ -5,20 +5,18 @@ a converter that forgets this publishes 375.49 deg for a heading. AIS says 511 d
 deg N. Sources: NMEA 2000 appendix B.1; ITU-R M.1371-5, table 48.
 """
 
-from math import pi
-
 from twin.live.signals.channels import CHANNELS
+from twin.physics.maths import RAD
 
 Field = tuple[tuple[int, ...], float]  # (raw codes, resolution in border units)
-DEG = 180.0 / pi
 KNOT = 1852.0 / 3600.0
 
 UINT16 = (65535, 65534, 65533)
 INT16 = (32767, 32766, 32765)
 INT32 = (2147483647, 2147483646, 2147483645)
 UINT32 = (4294967295, 4294967294, 4294967293)
-DIRECTION: list[Field] = [(UINT16, 1e-4 * DEG)]  # 0 to 360: [deg]
-ANGLE: list[Field] = [(INT16, 1e-4 * DEG)]  # to either side: [deg]
+DIRECTION: list[Field] = [(UINT16, 1e-4 * RAD)]  # 0 to 360: [deg]
+ANGLE: list[Field] = [(INT16, 1e-4 * RAD)]  # to either side: [deg]
 SPEED: list[Field] = [(UINT16, 0.01), (INT16, 0.01), (UINT16, 0.01 * KNOT), ((1023,), 0.1 * KNOT)]  # [m/s]
 
 FIELDS: dict[str, list[Field]] = {
@@ -28,7 +26,7 @@ FIELDS: dict[str, list[Field]] = {
     "wave_direction_deg": DIRECTION,
     "rudder_angle_deg": ANGLE,
     "roll_deg": ANGLE,
-    "yaw_rate_degps": [(INT32, 1e-6 / 32 * DEG), ((-1,), (128 / 4.733) ** 2 / 60.0)],
+    "yaw_rate_degps": [(INT32, 1e-6 / 32 * RAD), ((-1,), (128 / 4.733) ** 2 / 60.0)],
     "propeller_rate_rpm": [(UINT16, 0.25), (INT16, 0.25)],
     "water_depth_m": [(UINT32, 0.01), (UINT16, 0.1)],
     "draught_mean_m": [(UINT16, 0.01), (INT16, 0.01)],

@@ -3,7 +3,8 @@
 from math import pi
 from typing import NamedTuple
 
-DEG = pi / 180.0
+from twin.physics.maths import DEG
+
 ANGLE = "angle: see the actuator's kind"
 
 

@@ -7,8 +7,8 @@ from math import inf, pi
 from pathlib import Path
 from typing import Any
 
+from twin.physics.maths import RAD
 from twin.recording.formats.lines import numbered
-from twin.recording.formats.nmea2000_pgns import DEG
 from twin.recording.formats.recorder_stamps import Stamp
 from twin.recording.formats.signals import Signals
 
@@ -130,7 +130,7 @@ def in_degrees(out: Signals, largest: dict[str, float], units: str) -> None:
     for name in largest:
         s = out.series[name]
         for i, x in enumerate(s.values):
-            s.values[i] = x * DEG
+            s.values[i] = x * RAD
     out.notes.append(
         "angles are in radians (no direction exceeds 2 pi)" if units != "si" else "angles are in radians"
     )

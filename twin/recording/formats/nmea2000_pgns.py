@@ -6,11 +6,11 @@ little-endian; the three largest values of a field mean "not available", "error"
 """
 
 from collections.abc import Callable, Iterator
-from math import pi
+
+from twin.physics.maths import RAD
 
 Part = tuple[str, str, float]
-DEG = 180.0 / pi
-ANGLE = 1e-4 * DEG  # [deg] a step of most angles
+ANGLE = 1e-4 * RAD  # [deg] a step of most angles
 
 
 def unsigned(d: bytes, at: int, size: int, scale: float) -> float | None:
@@ -54,7 +54,7 @@ def heading(d: bytes) -> Iterator[Part]:
 
 def rate_of_turn(d: bytes) -> Iterator[Part]:
     """Yaw rate [deg/s]."""
-    yield from one("rate", "yaw_rate_degps", signed(d, 1, 4, 1e-6 / 32.0 * DEG))
+    yield from one("rate", "yaw_rate_degps", signed(d, 1, 4, 1e-6 / 32.0 * RAD))
 
 
 def attitude(d: bytes) -> Iterator[Part]:

@@ -2,35 +2,34 @@
 only."""
 
 import json
-from math import pi
 from pathlib import Path
 from typing import Any
 
+from twin.physics.maths import RAD
 from twin.recording.formats.lines import numbered
 from twin.recording.formats.recorder_stamps import from_epoch, from_iso
 from twin.recording.formats.signals import Signals
 
 SAYS = "a Signal K delta log"
-DEG = 180.0 / pi
 # Signal K's paths, in SI, and what they become (specification 1.7, keys by vessel)
 PATHS: dict[str, tuple[str, float]] = {
-    "navigation.headingTrue": ("heading_true_north_deg", DEG),
-    "navigation.headingMagnetic": ("heading_magnetic_deg", DEG),
-    "navigation.magneticVariation": ("magnetic_variation_deg", DEG),
-    "navigation.courseOverGroundTrue": ("course_over_ground_deg", DEG),
+    "navigation.headingTrue": ("heading_true_north_deg", RAD),
+    "navigation.headingMagnetic": ("heading_magnetic_deg", RAD),
+    "navigation.magneticVariation": ("magnetic_variation_deg", RAD),
+    "navigation.courseOverGroundTrue": ("course_over_ground_deg", RAD),
     "navigation.speedOverGround": ("speed_over_ground_mps", 1.0),
     "navigation.speedThroughWater": ("surge_velocity_through_water_mps", 1.0),
     "navigation.speedThroughWaterTransverse": ("sway_velocity_through_water_mps", 1.0),
-    "navigation.rateOfTurn": ("yaw_rate_degps", DEG),
-    "navigation.attitude.roll": ("roll_deg", DEG),
+    "navigation.rateOfTurn": ("yaw_rate_degps", RAD),
+    "navigation.attitude.roll": ("roll_deg", RAD),
     "navigation.position.latitude": ("latitude_deg", 1.0),
     "navigation.position.longitude": ("longitude_deg", 1.0),
-    "steering.rudderAngle": ("rudder_angle_deg", DEG),
+    "steering.rudderAngle": ("rudder_angle_deg", RAD),
     "environment.wind.speedApparent": ("apparent_wind_speed_mps", 1.0),
-    "environment.wind.angleApparent": ("apparent_wind_angle_deg", DEG),
+    "environment.wind.angleApparent": ("apparent_wind_angle_deg", RAD),
     "environment.wind.speedOverGround": ("true_wind_speed_mps", 1.0),
-    "environment.wind.directionTrue": ("true_wind_direction_deg", DEG),
-    "environment.wind.angleTrueGround": ("true_wind_angle_deg", DEG),
+    "environment.wind.directionTrue": ("true_wind_direction_deg", RAD),
+    "environment.wind.angleTrueGround": ("true_wind_angle_deg", RAD),
     "environment.depth.belowSurface": ("water_depth_m", 1.0),
     "environment.depth.belowTransducer": ("water_depth_m", 1.0),
     "design.draft.current": ("draught_mean_m", 1.0),

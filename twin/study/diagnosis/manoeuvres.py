@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from twin.physics.actuators.helm import ACROSS, actuator_orders
+from twin.physics.maths import DEG
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.diagnosis.case import Case, visible
@@ -22,7 +23,6 @@ LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of its lengths
 STEPS_PER_LENGTH = 12
 TURN = 5.0  # lengths for which one actuator works unlike the others
 SLOWEST = 0.3  # of U_0: at which a ship of actuators sails a manoeuvre
-DEG = pi / 180.0
 
 
 @dataclass

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.num import as_given, num
+from twin.physics.maths import RAD
 from twin.physics.ship import Ship
 from twin.study.prediction.openloop import Windows
 
-DEG = 180.0 / np.pi
 SECTORS = (("ahead", 0.0), ("the starboard beam", 90.0), ("astern", 180.0), ("the port beam", 270.0))
 QUARTERS = (("north", 0.0), ("east", 90.0), ("south", 180.0), ("west", 270.0))
 Condition = tuple[str, np.ndarray]
@@ -58,12 +58,12 @@ def _of_track(w: Windows, horizon_s: float) -> dict[str, np.ndarray]:
         "north": mean(x),
         "east": mean(y),
         "speed": mean(np.hypot(u, v)),
-        "drift": mean(np.arctan2(v, np.abs(u) + 0.01)) * DEG,
-        "rudder": mean(t.delta) * DEG,
-        "rudder_size": mean(np.abs(t.delta)) * DEG,
-        "turning": mean(r) * DEG,
-        "turning_size": mean(np.abs(r)) * DEG,
-        "heading": np.arctan2(mean(np.sin(psi)), mean(np.cos(psi))) * DEG,
+        "drift": mean(np.arctan2(v, np.abs(u) + 0.01)) * RAD,
+        "rudder": mean(t.delta) * RAD,
+        "rudder_size": mean(np.abs(t.delta)) * RAD,
+        "turning": mean(r) * RAD,
+        "turning_size": mean(np.abs(r)) * RAD,
+        "heading": np.arctan2(mean(np.sin(psi)), mean(np.cos(psi))) * RAD,
         "rpm": mean(t.n) * 60.0,
         "rpm_change": mean(rate) * 60.0,
     }
@@ -73,12 +73,12 @@ def _of_track(w: Windows, horizon_s: float) -> dict[str, np.ndarray]:
             u - seas["wind_speed"] * np.cos(seas["wind_to"] - psi),
             v - seas["wind_speed"] * np.sin(seas["wind_to"] - psi),
         )
-        out |= {"wind": mean(seas["wind_speed"]), "wind_angle": np.arctan2(mean(aside), mean(ahead_)) * DEG}
+        out |= {"wind": mean(seas["wind_speed"]), "wind_angle": np.arctan2(mean(aside), mean(ahead_)) * RAD}
     if "H_s" in seas and "wave_to" in seas:
         angle = seas["wave_to"] + np.pi - psi
         out |= {
             "waves": mean(seas["H_s"]),
-            "wave_angle": np.arctan2(mean(np.sin(angle)), mean(np.cos(angle))) * DEG,
+            "wave_angle": np.arctan2(mean(np.sin(angle)), mean(np.cos(angle))) * RAD,
         }
     for name in ("depth", "draught"):
         if name in seas:
@@ -93,7 +93,7 @@ def conditions(m: Means, ship: Ship) -> list[Condition]:
     """Every condition worth asking about. Each (W,): a mask of the windows."""
     U, L, T, B = (float(x) for x in (ship.U_0, ship.L_pp, ship.T, ship.B))
     rpm = float(np.nanmax(np.abs(m.values["rpm"])))
-    turn = U / L * DEG  # a turn of one length's radius [deg/s]
+    turn = U / L * RAD  # a turn of one length's radius [deg/s]
     return [
         *_thirds(m["speed"], "speed", "m/s", 0.05 * U),
         *_thirds(m["rudder_size"], "rudder", "deg", 2.0),
