@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.errors import SettingsError
-from twin.recording.map_file import parse_map
+from twin.recording.map_file import number, parse_map
 from twin.recording.read import read_voyage
 
 MAP = {
@@ -126,6 +126,11 @@ def test_a_wrong_map_is_a_setting_that_says_where(table, words):
     with pytest.raises(SettingsError, match=r"my\.toml") as caught:
         parse_map(table, "my.toml")
     assert words in str(caught.value), str(caught.value)
+
+
+def test_a_whole_number_too_long_for_a_float_is_refused_in_one_line():
+    with pytest.raises(SettingsError, match="longer than a number can be"):
+        number(10**400, "map.toml: [constant] depth")
 
 
 def test_a_map_that_asks_for_a_column_that_is_not_there(columns, write_csv, refused):

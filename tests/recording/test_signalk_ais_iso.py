@@ -48,6 +48,15 @@ def test_a_signal_k_log_goes_in_and_other_vessels_stay_out(tmp_path, sailed):
     assert any("120 deltas of other vessels" in note for note in v.meta["notes"])
 
 
+def test_a_whole_number_too_long_for_a_float_costs_its_update_and_no_more(tmp_path, sailed):
+    long = '{"updates": [{"timestamp": "%s", "values": [{"path": "navigation.headingTrue", "value": %d}]}]}'
+    path = tmp_path / "deltas.jsonl"
+    path.write_text("\n".join([*map(json.dumps, deltas(sailed)), long % (stamp(sailed["t"][-1]), 10**400)]))
+    signals = recognised(path).series(path)
+    assert signals.skipped["updates with a number too long to be one"] == 1
+    assert len(signals.series["navigation.headingTrue.can0.52"].values) == len(sailed["t"])
+
+
 def test_an_iso_19848_package_is_read_by_its_channels(tmp_path, sailed):
     names = ["north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm"]
     rows = [
@@ -73,6 +82,7 @@ def test_an_iso_19848_package_is_read_by_its_channels(tmp_path, sailed):
             ]
         }
     }
+    rows[0] = rows[0] | {"Value": [*rows[0]["Value"][:4], 10**400]}  # too long to be a number
     path = tmp_path / "package.json"
     path.write_text(json.dumps(package))
     assert recognised(path).name == "iso19848"

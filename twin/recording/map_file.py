@@ -263,7 +263,10 @@ def number(value: Any, where: str) -> float:
     """The value as a number. SettingsError: it is none."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise SettingsError(f"{where} = {value!r} must be a number.")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise SettingsError(f"{where} = {value!r:.60} is longer than a number can be.") from None
 
 
 def of_actuator(owner: str, last: str) -> str:

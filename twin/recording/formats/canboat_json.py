@@ -57,7 +57,7 @@ def read(path: Path) -> Signals:
             pgn, fields = int(message["pgn"]), message["fields"]
             t = stamp(str(message.get("timestamp", "")))
             found = list(parts(pgn, fields)) if t is not None else []
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
             out.skipped["lines that are no such message"] += 1
             continue
         if t is None:

@@ -77,7 +77,7 @@ def sample(out: Signals, name: str, t: float, value: Any) -> None:
     """One value of a data channel at `t` [s since 1970]; what is no number is counted."""
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         out.skipped["values that are no numbers"] += 1
         return
     last = name.rstrip("/").rpartition("/")[2]

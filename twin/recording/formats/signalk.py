@@ -64,7 +64,10 @@ def read(path: Path) -> Signals:
         updates = delta.get("updates", ())
         for update in updates if isinstance(updates, list) else ():
             if isinstance(update, dict):
-                take(out, update, received, number)
+                try:
+                    take(out, update, received, number)
+                except OverflowError:
+                    out.skipped["updates with a number too long to be one"] += 1
     return out.finish()
 
 
