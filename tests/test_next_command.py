@@ -1,8 +1,18 @@
 """The `next:` line of a diagnosis: what an owner can type or sail."""
 
+import shlex
+from argparse import Namespace
+
 import pytest
 
-from twin.commands.next_command import after_diagnose
+from twin.commands.next_command import (
+    add_typed,
+    after_compare,
+    after_diagnose,
+    after_import,
+    after_instruments,
+    after_map,
+)
 
 
 def asked(verdict, lasting=(), manoeuvre=None):
@@ -27,3 +37,23 @@ def test_what_was_named_is_added_and_where_nothing_is_missing_the_next_voyage_is
     assert after_diagnose(["a.mcap"], "s.toml", named).startswith("twin add HullFouling --ship s.toml")
     healthy = after_diagnose(["a.mcap"], "s.toml", asked("nothing_missing"))
     assert healthy.startswith("twin diagnose OTHER-DAY.mcap --ship s.toml") and "twin calibrate" in healthy
+
+
+def test_every_next_command_takes_a_file_name_as_one_word_whatever_stands_in_it():
+    """Test: names with a space and with what a shell would run. Expected: a shell reads back the names."""
+    ship, voyage = "MV Alma.toml", "monday $(reboot).mcap"
+    for verdict, lasting in (("missing", ["HullFouling"]), ("moments", ())):
+        assert {voyage, ship} <= set(shlex.split(after_diagnose([voyage], ship, asked(verdict, lasting))))
+    args = Namespace(
+        effects=["Wind"], ship=ship, voyage=[voyage], held_out=[voyage], cross_validated=True, output="b.toml"
+    )
+    of_sensors = {"horizons": [{"noise_floor": {"of": "sensors"}}]}
+    for said in (
+        after_compare([voyage], ship, of_sensors),
+        after_instruments([voyage], ship, None, True),
+        after_instruments([voyage], ship, None, False),
+        add_typed(args),
+    ):
+        assert {voyage, ship} <= set(shlex.split(said))
+    assert voyage in shlex.split(after_import(voyage, None))
+    assert {voyage, ship} <= set(shlex.split(after_map([voyage], ship)))

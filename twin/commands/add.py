@@ -7,7 +7,7 @@ from twin import whole
 from twin.api.update import check_proof, of_sailed
 from twin.commands import arguments
 from twin.commands.next_command import add_typed
-from twin.commands.verb_output import files, lines_to, progress, with_request, wrote
+from twin.commands.verb_output import files, lines_to, progress, typed, with_request, wrote
 from twin.errors import ThresholdError
 from twin.physics.effects import find_for
 from twin.physics.ship import load
@@ -56,5 +56,5 @@ def run(args: argparse.Namespace) -> int:
     files(args, found, page)
     if not made.accepted:
         raise ThresholdError(f"{made.refused} {args.output} was not written. --force writes it.")
-    print(f"next: twin compare {' '.join(judged)} --ship {args.output}", file=page)
+    print(f"next: {typed('compare', *judged, '--ship', args.output)}", file=page)
     return 0

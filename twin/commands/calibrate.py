@@ -7,7 +7,7 @@ import sys
 from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands import arguments
-from twin.commands.verb_output import files, lines_to, progress, wrote
+from twin.commands.verb_output import files, lines_to, progress, typed, wrote
 from twin.errors import ThresholdError
 from twin.physics.ship import load
 from twin.recording.ship_file_writer import save
@@ -48,6 +48,6 @@ def run(args: argparse.Namespace) -> int:
     if not found.accepted:
         print("\n".join(found.text()), file=sys.stderr)
         raise ThresholdError(f"{found.refused} {args.output} was not written.")
-    compare = f"twin compare VOYAGE.mcap --ship {args.output} --report compare.html"
+    compare = typed("compare", "VOYAGE.mcap", "--ship", args.output, "--report", "compare.html")
     print("\n".join([*found.text(), "", wrote(args.output), f"next: {compare}"]), file=lines_to(args))
     return 0

@@ -6,7 +6,7 @@ import argparse
 from twin.api.diagnosis import diagnose
 from twin.commands import arguments
 from twin.commands.next_command import after_diagnose
-from twin.commands.verb_output import answer, lines_to, progress
+from twin.commands.verb_output import answer, lines_to, progress, typed
 from twin.live.learning.residual import load as load_residual
 from twin.physics.ship import load
 from twin.recording.read import read_voyage
@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
         load_residual(args.residual, ship)  # one that must not be used is refused before the work
     voyages, reference = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
     found = diagnose(ship, voyages, reference=reference, progress=progress)
-    command = f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}"
+    command = typed("diagnose", *args.voyages, "--ship", args.ship)
     files = {"ship": args.ship, "voyages": args.voyages}
     found = found.with_keys(command=command, verdict_text=found.sentence, files=files)
     if args.identifiability or args.residual:

@@ -4,6 +4,7 @@ twin fault heading off --listen tcp/127.0.0.1:7448             sensors connect t
 """
 
 import argparse
+import shlex
 from math import inf
 
 from twin.cli import guarded
@@ -49,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     if args.log and args.output:
         changed, problems = in_a_log(args.log, args.output, args.what, fault)
         said = [f"{args.output}: {changed} messages with {args.what} {fault.kind}", *problems]
-        print("\n".join([*said, f"next: twin replay {args.output}"]))
+        print("\n".join([*said, f"next: {shlex.join(['twin', 'replay', args.output])}"]))
         return 0
     if args.log or not args.listen:
         raise UsageError("say where: --log LOG.mcap -o OUT.mcap for a copy, --listen PLACE for a live bus.")

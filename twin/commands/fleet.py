@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from twin.api.fleet import fleet
-from twin.commands.verb_output import answer, lines_to, progress
+from twin.commands.verb_output import answer, lines_to, progress, typed
 from twin.errors import TwinError, UsageError
 from twin.study.fleet.spread import cores
 
@@ -43,10 +43,10 @@ def run(args: argparse.Namespace) -> int:
             "more than one worker needs the package distributed. Run: pip install 'shiptwin[fleet]'"
         )
     found = fleet(args.fleet, args.folder, workers=args.workers, scheduler=args.scheduler, progress=progress)
-    command = f"twin fleet {args.fleet} -o {args.folder}"
+    command = typed("fleet", args.fleet, "-o", args.folder)
     rows = str(Path(args.folder) / "rows.parquet")
     answer(args, found.with_keys(command=command, rows=rows))
     first = found.data["ships"][0]
-    look = f"twin diagnose {first['latest']['file']} --ship {first['file']} --report diagnose.html"
+    look = typed("diagnose", first["latest"]["file"], "--ship", first["file"], "--report", "diagnose.html")
     print(f"\n{rows} has every row\nnext: {look}", file=lines_to(args))
     return 0

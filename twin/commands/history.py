@@ -4,7 +4,7 @@ import argparse
 
 from twin import whole
 from twin.commands import arguments
-from twin.commands.verb_output import lines_to
+from twin.commands.verb_output import lines_to, typed
 from twin.physics.ship import load
 from twin.recording.jsonable import plain
 from twin.study.update.ladder import SCHEMA_VERSION, ladder, terminal_lines
@@ -38,5 +38,5 @@ def run(args: argparse.Namespace) -> int:
 
         whole.write(args.report, history_page(ship), "--report")
         print(f"wrote {args.report}", file=page)
-    print(f"next: twin compare VOYAGE.mcap --ship {args.ship}", file=page)
+    print(f"next: {typed('compare', 'VOYAGE.mcap', '--ship', args.ship)}", file=page)
     return 0

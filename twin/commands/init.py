@@ -2,6 +2,7 @@
 from."""
 
 import argparse
+import shlex
 from pathlib import Path
 
 from twin import whole
@@ -39,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
     made = first_model(args.name, actuators=parts, **known)
     save(made.ship, args.output)
     better = Path(args.output).with_name(Path(args.output).stem + "-calibrated.toml")
-    calibrate = f"twin calibrate REF-*.mcap --ship {args.output} -o {better}"
+    calibrate = f"twin calibrate REF-*.mcap {shlex.join(['--ship', str(args.output), '-o', str(better)])}"
     said = [*made.text(), "", f"written: {args.output}"]
     said += [f"next:    twin import each reference voyage, then {calibrate}"]
     print("\n".join(said), file=lines_to(args))

@@ -8,7 +8,7 @@ from twin import whole
 from twin.api.instruments import FRAMES, InstrumentCheck, instruments
 from twin.commands import arguments
 from twin.commands.next_command import after_instruments
-from twin.commands.verb_output import lines_to, progress, with_request, wrote
+from twin.commands.verb_output import lines_to, progress, typed, with_request, wrote
 from twin.physics.ship import Ship, load
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
         _write(args, ship, done)
         print(f"\n{wrote(args.output)}", file=page)
     if args.json:
-        command = f"twin instruments {' '.join(args.voyages)}{f' --ship {args.ship}' if ship else ''}"
+        command = typed("instruments", *args.voyages, *(["--ship", args.ship] if ship else []))
         answer = with_request(done, command, ship=args.ship, voyages=args.voyages)
         whole.write_json(answer.to_dict(), args.json)
     print("\nnext:", after_instruments(args.voyages, args.ship, args.output, bool(done.faults)), file=page)

@@ -5,56 +5,56 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from twin.commands.verb_output import typed
 from twin.physics.ship import load
 
 
 def after_import(voyage: str, ship: str | None) -> str:
     """The comparison; before it a calibration, where the ship never had one."""
-    if ship and "structural" not in load(ship, arrays=False).notes:
-        better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
-        return (
-            "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
-            f"more), then twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, "
-            f"twin diagnose LATER.mcap --ship {better}"
-        )
-    return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
+    if not ship or "structural" in load(ship, arrays=False).notes:
+        return typed("compare", voyage, "--ship", ship or "SHIP.toml")
+    better = str(Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml"))
+    fit = typed("calibrate", "ref-1.mcap", "ref-2.mcap", "...", "--ship", ship, "-o", better)
+    why = "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or more)"
+    return f"{why}, then {fit}; after that, {typed('diagnose', 'LATER.mcap', '--ship', better)}"
 
 
 def after_map(files: Sequence[str], made: str | None) -> str:
     """A map that was proposed is confirmed by a person."""
-    return f"next: read and correct it, then twin import {' '.join(files)} --map {made} -o VOYAGE.mcap"
+    ready = typed("import", *files, "--map", str(made), "-o", "VOYAGE.mcap")
+    return f"next: read and correct it, then {ready}"
 
 
 def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None, faults: bool) -> str:
     """The same with the ship file to be corrected; a comparison, where one was written or no fault seen."""
     if not faults or (ship and output):
-        return f"twin compare {' '.join(voyages)} --ship {(faults and output) or ship or 'SHIP.toml'}"
-    return f"twin instruments {' '.join(voyages)} --ship {ship or 'SHIP.toml'} -o corrected.toml"
+        return typed("compare", *voyages, "--ship", (faults and output) or ship or "SHIP.toml")
+    return typed("instruments", *voyages, "--ship", ship or "SHIP.toml", "-o", "corrected.toml")
 
 
 def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
     """The diagnosis; before it a calibration, where the ship never had one."""
     by = ship if result["horizons"][-1]["noise_floor"]["of"] != "sensors" else "calibrated.toml"
-    diagnose = f"twin diagnose {' '.join(voyages)} --ship {by} --report diagnose.html"
-    return diagnose if by == ship else f"twin calibrate REFERENCE.mcap --ship {ship} -o {by}, then {diagnose}"
+    fit = "" if by == ship else typed("calibrate", "REFERENCE.mcap", "--ship", ship, "-o", by) + ", then "
+    return fit + typed("diagnose", *voyages, "--ship", by, "--report", "diagnose.html")
 
 
 def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
     """What to sail, or to ask together, where voyages cannot tell; what to add where one may be."""
-    paths, then = " ".join(voyages), result["next_manoeuvre"]
+    of, then = ("--ship", ship), result["next_manoeuvre"]
     sail = then and f"sail {then['manoeuvre']}, then twin diagnose with that voyage too"
-    now = "" if sail else f"twin compare {paths} --ship {ship} --report compare.html"
+    now = "" if sail else typed("compare", *voyages, *of, "--report", "compare.html")
     if lasting := result["answer"]["lasting"]:
-        now = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
+        now = typed("add", *lasting, *of, "--voyage", *voyages, "-o", "better.toml")
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
-        now = f"twin diagnose {paths} OTHER-DAY.mcap --ship {ship}: voyages together tell more than one"
+        now = f"{typed('diagnose', *voyages, 'OTHER-DAY.mcap', *of)}: voyages together tell more than one"
     elif result["verdict"] == "nothing_missing":
-        now = f"twin diagnose OTHER-DAY.mcap --ship {ship}; what sailed so is good for twin calibrate, too"
+        now = f"{typed('diagnose', 'OTHER-DAY.mcap', *of)}; what sailed so is good for twin calibrate, too"
     return "; or now: ".join(filter(None, (sail, now)))
 
 
 def add_typed(args: argparse.Namespace) -> str:
     """What was typed, for the page."""
-    command = f"twin add {' '.join(args.effects)} --ship {args.ship} --voyage {' '.join(args.voyage)}"
-    command += f" --held-out {' '.join(args.held_out)}" * bool(args.held_out)
-    return f"{command}{' --cross-validated' * args.cross_validated} -o {args.output}"
+    proof = ["--held-out", *args.held_out] if args.held_out else ["--cross-validated"] * args.cross_validated
+    files = ["--ship", args.ship, "--voyage", *args.voyage, *proof, "-o", args.output]
+    return typed("add", *args.effects, *files)

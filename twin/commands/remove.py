@@ -4,7 +4,7 @@ import argparse
 
 from twin import whole
 from twin.commands import arguments
-from twin.commands.verb_output import lines_to
+from twin.commands.verb_output import lines_to, typed
 from twin.physics.ship import load
 from twin.recording.ship_file_writer import save
 from twin.study.update.removal import SCHEMA_VERSION, remove
@@ -38,5 +38,5 @@ def run(args: argparse.Namespace) -> int:
         f"{args.output}",
         file=page,
     )
-    print(f"next: twin history {args.output}", file=page)
+    print(f"next: {typed('history', args.output)}", file=page)
     return 0

@@ -5,14 +5,13 @@ import argparse
 from twin import whole
 from twin.cli import guarded
 from twin.commands import arguments
-from twin.commands.verb_output import lines_to
+from twin.commands.verb_output import lines_to, typed
 from twin.errors import UsageError
 from twin.live import ending
 from twin.live.log_replay import replay, summary_lines
 from twin.live.onto_bus import replay_onto_bus
 from twin.live.replay_record import ReplayRecord
 from twin.live.signals import config
-from twin.live.signals.config import Settings
 
 TO_BUS = "say it on the bus at the voyage's pace, for viewers; space or Ctrl-Z pauses, + and - set it, q ends"
 
@@ -43,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     return _sail(args, settings)
 
 
-def _sail(args: argparse.Namespace, settings: Settings) -> int:
+def _sail(args: argparse.Namespace, settings: config.Settings) -> int:
     record, speed = ReplayRecord() if args.report else None, 1.0 if args.speed is None else args.speed
     if args.to_bus:
         found = replay_onto_bus(args.log, settings, args.output, speed, record)
@@ -55,6 +54,6 @@ def _sail(args: argparse.Namespace, settings: Settings) -> int:
         from twin.report.replay_page import replay_page
 
         whole.write(args.report, replay_page(found, record), "--report")
-    compare = f"twin compare {args.output or args.log} --ship {settings['ship.file']}"
+    compare = typed("compare", args.output or args.log, "--ship", settings["ship.file"])
     print("\n".join([*summary_lines(found), f"next: {compare}"]), file=lines_to(args))
     return 0

@@ -6,7 +6,7 @@ from twin import whole
 from twin.api.tube import tube
 from twin.api.voyages import read_voyage
 from twin.commands import arguments
-from twin.commands.verb_output import lines_to, progress
+from twin.commands.verb_output import lines_to, progress, typed
 from twin.physics.ship import load, save
 from twin.study.reference.tube_lines import terminal_lines
 
@@ -42,5 +42,6 @@ def run(args: argparse.Namespace) -> int:
         whole.write_json(result, args.json)
     page = lines_to(args)
     print("\n".join(terminal_lines(result)), file=page)
-    print(f"\nwrote {args.output}\nnext: twin replay VOYAGE.mcap --ship {args.output}", file=page)
+    replay = typed("replay", "VOYAGE.mcap", "--ship", args.output)
+    print(f"\nwrote {args.output}\nnext: {replay}", file=page)
     return 0

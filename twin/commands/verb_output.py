@@ -1,6 +1,7 @@
 """What the verbs of the study answer alike: progress on standard error, lines, JSON and the page."""
 
 import argparse
+import shlex
 import sys
 from pathlib import Path
 from typing import Any, TextIO
@@ -18,6 +19,11 @@ def progress(text: str) -> None:
 def lines_to(args: argparse.Namespace) -> TextIO:
     """Where the lines go: standard output, unless the JSON goes there."""
     return sys.stderr if args.json == "-" else sys.stdout
+
+
+def typed(*words: str) -> str:
+    """A command of the twin as a shell takes it: each word is one, whatever stands in a file's name."""
+    return shlex.join(["twin", *words])
 
 
 def with_request(found: Result, command: str, **files: Any) -> Result:
