@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import shlex
 import signal
 import socket
 import subprocess
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.studio.by_mouse import go, opened
 from twin.live.demonstration import UNDER_WAY, ticks_of
 from twin.studio.live import Live
 
@@ -186,6 +188,22 @@ def test_a_place_that_is_none_is_said_in_one_line(page, place):
         and "as in 'tcp/127.0.0.1:7447'" in said
         and not page.value("!!document.querySelector('iframe')")
     )
+
+
+def test_the_command_for_a_log_takes_its_name_as_one_word(tab, tmp_path, serve):
+    (tmp_path / "monday $(reboot).mcap").touch()
+    served = serve(tmp_path)
+    try:
+        page = opened(tab, served)
+        go(page, "#/live")
+        page.value(
+            "(() => { const s = document.querySelector('#live-log'); s.selectedIndex = 1;"
+            "s.dispatchEvent(new Event('change')); })()"
+        )
+        said = page.value("document.querySelector('main .command code').textContent")
+        assert shlex.split(said) == ["twin", "view", "monday $(reboot).mcap"]
+    finally:
+        served.stop()
 
 
 def test_where_nobody_speaks_nothing_looks_alive(page):

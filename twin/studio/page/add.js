@@ -2,7 +2,7 @@
 
 import { address, ask, files, start, state } from "/app/api.js";
 import { again, doing } from "/app/main.js";
-import { boxes, button, card, command, el, field, table } from "/app/dom.js";
+import { boxes, button, card, command, el, field, quoted, table } from "/app/dom.js";
 import { asGiven, num, readable } from "/app/number.js";
 import { chart } from "/app/draw.js";
 import { seriesCard } from "/app/compare.js";
@@ -58,7 +58,7 @@ function answer(a) {
 /** Taken out again, into a file of its own; the history remembers both. */
 function undo(a) {
   if (!a.result.output) return null;
-  const there = files("ship").some((f) => f.name === a.result.output), output = nextName(a.result.output, "-undone"), text = `twin remove ${a.result.added.join(" ")} --ship ${a.result.output} -o ${output}`;
+  const there = files("ship").some((f) => f.name === a.result.output), output = nextName(a.result.output, "-undone"), text = `twin remove ${a.result.added.join(" ")} --ship ${quoted(a.result.output)} -o ${quoted(output)}`;
   if (!there) return el("p.note", null, `${a.result.output} is not in the folder any more.`);
   return [el(".tools", null, el("a.button", { href: address("compare"), onclick: () => { state.kept["compare.ship"] = a.result.output; state.kept["compare.voyages"] = new Set(a.job.asked.held_outs || a.job.asked.voyages); }, id: "to-compare" }, "Compare with the better model"),
     button("Undo", doing(async () => { await ask("/api/remove", { ship: a.result.output, effects: a.result.added, output }); await again(); location.hash = address("ship", output); }), { id: "undo", disabled: state.project.read_only })), el("details", null, el("summary", null, "The command that undoes it"), command(text))];

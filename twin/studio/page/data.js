@@ -2,7 +2,7 @@
 
 import { address, ask, files, found, over, samples, start, state } from "/app/api.js";
 import { again, doing } from "/app/main.js";
-import { boxes, button, card, choose, command, el, field, named, table } from "/app/dom.js";
+import { boxes, button, card, choose, command, el, field, named, quoted, table } from "/app/dom.js";
 import { asGiven, num } from "/app/number.js";
 import { timePlot, timeView, zoomer } from "/app/plot.js";
 import { TAGS, answerOf, go, kept, stateWord } from "/app/shared.js";
@@ -150,7 +150,7 @@ function importer(name, k, map) {
   };
   return card("Import", refused.length ? el("p.bad", null, `Refused while ${refused.join(", ")} ${refused.length > 1 ? "prove" : "proves"} a mistake: apply the remedy, or accept it.`) : el("p", null, "Checked and written as a voyage that every verb reads."),
     el("form", null, field("voyage file", output), refused.length ? boxes("import although it says otherwise", "accept", refused.map((c) => [c, c.replaceAll("_", " ")]), accept, () => { button_.disabled = refused.some((c) => !accept.has(c)); }) : null, (button_ = go("Import", run, !!k.problem || refused.some((c) => !accept.has(c))))),
-    command(`twin import ${name} --map ${mapOf(name)} -o ${output.value}`), imports(name));
+    command(`twin import ${quoted(name)} --map ${quoted(mapOf(name))} -o ${quoted(output.value)}`), imports(name));
 }
 
 let button_ = null;

@@ -45,6 +45,9 @@ export function card(title, ...children) {
 
 export function button(text, onclick, props) { return el("button", { type: "button", onclick, ...props }, text); }
 
+/** A file's name as one word of a shell. */
+export const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+
 /** The command line that does the same, to be copied. */
 export function command(text) {
   return el(".command", null, el("code", null, text), button("Copy", () => navigator.clipboard?.writeText(text), { class: "small", "aria-label": `Copy the command ${text}` }));

@@ -2,7 +2,7 @@
 
 import { ask, files, state } from "/app/api.js";
 import { doing } from "/app/main.js";
-import { button, card, choose, command, el, field } from "/app/dom.js";
+import { button, card, choose, command, el, field, quoted } from "/app/dom.js";
 import { kept } from "/app/shared.js";
 
 const NAME = "Live · twin studio";
@@ -10,7 +10,7 @@ const NAME = "Live · twin studio";
 export async function live() {
   const said = kept("live", () => ({ connect: "tcp/127.0.0.1:7447", log: "", on: "" })), place = el("div", { id: "bridge" }), typed = el("div");
   said.on = state.project.live || "";
-  const word = () => typed.replaceChildren(command(said.log ? `twin view ${said.log}` : `twin view --connect ${said.connect}`));
+  const word = () => typed.replaceChildren(command(said.log ? `twin view ${quoted(said.log)}` : `twin view --connect ${quoted(said.connect)}`));
   const show = () => place.replaceChildren(said.on ? card(`Listening to ${said.on}`, el("iframe", { src: "/live", title: `The twin's bridge: ${said.on}`, onload: titled }), el(".tools", null, el("a.button", { href: "/live", target: "_blank", rel: "noopener" }, "In a window of its own"), button("Leave", doing(async () => { await ask("/api/live", { leave: true }); state.project.live = ""; said.on = ""; document.title = NAME; show(); }), { id: "leave" }))) : el("p.note", null, "No twin is looked at. Attaching listens only: nothing is sent to it."));
   const connect = el("input", { type: "text", id: "connect", value: said.connect, oninput: (e) => { said.connect = e.target.value; word(); } });
   const logs = choose("live-log", [["", "the bus"], ...files("voyage").map((f) => [f.name, `log ${f.name}`])], said.log, (v) => { said.log = v; word(); });
