@@ -9,8 +9,9 @@ from dataclasses import replace
 from math import inf
 
 from twin.live.gates.gate import Gate
-from twin.live.signals.channels import BY_NAME, DEG
+from twin.live.signals.channels import BY_NAME
 from twin.physics.actuators import Actuator
+from twin.physics.maths import DEG
 from twin.physics.ship import Ship
 
 FASTEST = 15.0  # of U_0/D: three times what a thruster turns that slips as one does at a fifth of its pitch

@@ -10,7 +10,7 @@ from math import inf
 from typing import Any
 
 from twin.physics.actuators.actuator_channels import CHANNELS_OF, attribute_of
-from twin.physics.maths import DEG as DEG
+from twin.physics.maths import DEG
 
 
 @dataclass(frozen=True, slots=True)
