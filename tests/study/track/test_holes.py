@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from twin.errors import DataError
 from twin.num import as_given
 from twin.physics.model import Model
 from twin.recording.holes import pieces, slopes, steps_on
@@ -138,3 +139,12 @@ def test_readings_of_a_heading_alone_do_not_say_where_she_was():
     measured[:, 2], measured[:100, :2], measured[300:, :2] = 0.1, 1.0, 1.0
     whole = moved_as_read(measured, 1.0, 10.0)
     assert whole[:98].all() and not whole[100:299].any() and whole[301:].all()
+
+
+@pytest.mark.parametrize("name", ("north_m", "heading_true_north_deg"))
+def test_a_voyage_that_was_made_without_place_or_heading_is_refused_in_one_line(make, kvlcc2, name):
+    """Test: a voyage made in Python that has no such column. Expected: a word, no error of linear algebra."""
+    voyage = make()
+    bare = voyage.with_rows(voyage.time_s, {n: x for n, x in voyage.columns.items() if n != name})
+    with pytest.raises(DataError, match="place and heading together"):
+        track(bare, kvlcc2)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
 from twin.live.prediction.circumstances import NAMES, Regressors
+from twin.num import as_given
 from twin.physics.maths import dot, total
 from twin.physics.ship import Ship
 
@@ -125,7 +126,7 @@ def _read(table: Mapping[str, Any]) -> RegionTable:
     if not levels or list(levels) != sorted(levels):
         raise ValueError("levels must rise")
     if not 0.0 < level < 1.0:
-        raise ValueError(f"level = {level:g} is no share between 0 and 1")
+        raise ValueError(f"level = {as_given(level)} is no share between 0 and 1")
     low, high = _row(table["lowest"], n + 2), _row(table["highest"], n + 2)
     if any(lo > hi for lo, hi in zip(low, high, strict=True)):
         raise ValueError("lowest lies above highest")

@@ -146,7 +146,7 @@ def standing(
     """The longest stretch of one same value of `name` in which `other` changes by more than `far`. `other`
     (N,) and `far` in one unit, which the text shows times `unit`."""
     x = view.even[name]
-    if other is None or x.size < 20:
+    if other is None or x.size < 20 or not np.isfinite(x).any():
         return ""
     with np.errstate(invalid="ignore"):
         moves = np.abs(np.diff(x)) > 1e-9 * np.nanmax(np.abs(x))

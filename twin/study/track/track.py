@@ -45,6 +45,7 @@ STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail its own length
 # and no fewer, however slowly it was logged: with longer steps a ship cannot be stepped at all
 FEWEST_PER_LENGTH = 8
+NEVER_TOGETHER = "no control, place and heading together. Check the map, and the clocks of the instruments."
 ROLLED = 0.3  # L/U_0 over which the measured heel is averaged before its rate is taken
 
 
@@ -139,8 +140,8 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     if voyage.sailed_s < 3.0 * length_s:
         raise DataError(
             f"{voyage.name}: {voyage.sailed_s:.0f} s is less than three ship lengths of sailing "
-            f"({3 * length_s:.0f} s): "
-            "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
+            f"({3 * length_s:.0f} s): nothing can be judged from it. Record at least twenty minutes of "
+            "manoeuvring."
         )
     hold_s = {name: hold_s_of(voyage, name) for name in of_ship(ship)}
     hole_s = max(HOLE_S, 3.0 * max(hold_s.values()))
@@ -159,13 +160,12 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     whole = np.isfinite(np.array(list(controls.values()))).all(0)
     if not whole.any():
         raise DataError(f"{voyage.name}: {_no_controls(voyage, tuple(hold_s), ship.name)}")
+    if not np.isfinite(measured[:, :3]).any(0).all():
+        raise DataError(f"{voyage.name}: {NEVER_TOGETHER}")
     whole &= known(voyage, grid.time_s, tuple(hold_s))
     made = _made(voyage.name, grid, measured, controls, whole, ship, h)
     if not made.whole.any():
-        raise DataError(
-            f"{voyage.name}: controls, place and heading are never there together. Check the "
-            "map, and the clocks of the instruments."
-        )
+        raise DataError(f"{voyage.name}: {NEVER_TOGETHER}")
     off = outliers(made.situation(), Model.of(ship).without_inputs(made.missing())[0], h, made.whole)
     if not off.any():
         return made
