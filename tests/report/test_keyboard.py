@@ -66,8 +66,9 @@ def every(tmp_path_factory):
     from twin.study.track.track import track
 
     def one(name):
-        made = voyage(find("Current").absent(ship()).but(east=0.8), name=name, seconds=500.0)
-        return Sailed(made, track(made, ship()), "")
+        stream = find("Current").absent(ship()).but(east=0.8)
+        made = voyage(stream, name=name, seconds=500.0, noise=1.0 + 1e-6 * len(name))
+        return Sailed(made, track(made, ship()), name)
 
     return pages.made(tmp_path_factory.mktemp("pages"), one, Model.of(ship()), ship())
 
