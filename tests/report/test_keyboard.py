@@ -67,7 +67,7 @@ def every(tmp_path_factory):
 
     def one(name):
         stream = find("Current").absent(ship()).but(east=0.8)
-        made = voyage(stream, name=name, seconds=500.0, noise=1.0 + 1e-6 * len(name))
+        made = voyage(stream, name=name, seconds=500.0, noise=1.0 - 1e-6 * len(name))
         return Sailed(made, track(made, ship()), name)
 
     return pages.made(tmp_path_factory.mktemp("pages"), one, Model.of(ship()), ship())

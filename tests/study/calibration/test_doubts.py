@@ -1,8 +1,10 @@
 """What a calibration says is doubtful."""
 
+from dataclasses import replace
+
 import pytest
 
-from twin.study.calibration.doubts import doubts
+from twin.study.calibration.doubts import doubts, resistance_of
 
 FELL = {"horizon_s": 60.0, "windows": 9, "position_m": 1.0, "before_m": 2.0}
 FELL |= {"heading_deg": 1.0, "before_deg": 2.0}
@@ -48,3 +50,18 @@ def test_several_of_them_are_said_in_the_plural():
 def test_few_reference_voyages_are_said_to_be_few(voyages, begins):
     said = doubts([], [FELL], (0.03, 0.03, 0.03), voyages=voyages)
     assert len(said) == len(begins) and all(s.startswith(b) for s, b in zip(said, begins, strict=True))
+
+
+@pytest.mark.parametrize(("after_n", "lines"), [(66.2e3, 1), (0.34 * 662e3, 0), (766e3, 0)])
+def test_a_hull_without_resistance_is_doubtful(after_n, lines):
+    """Found on a ferry whose pitch was changed at constant turns, and was not in the map."""
+    said = doubts([], [FELL], (0.03, 0.03, 0.03), resistance=(662e3, after_n))
+    assert len(said) == lines
+    assert all("10 % is left (66.2 kN; by the particulars 662 kN)" in s and "pitch" in s for s in said)
+
+
+def test_the_resistance_of_a_ship_is_that_of_its_hull_at_service_speed(kvlcc2):
+    """Expected: X_uu alone, by hand."""
+    bare = replace(kvlcc2, derivatives=replace(kvlcc2.derivatives, X_u=0.0, X_uuu=0.0))
+    by_hand = -0.5 * bare.rho * bare.L_pp * bare.T * bare.derivatives.X_uu * bare.U_0**2
+    assert resistance_of(bare) == pytest.approx(by_hand)

@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from twin.num import num
+from twin.num import num, percent
+from twin.physics import core
 from twin.physics.actuators import NUMBERS
 from twin.physics.effects import find, of_role
-from twin.physics.ship import DERIVATIVES
+from twin.physics.model import Model
+from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation.box import at_an_end
 from twin.study.estimation.columns import NO_MODEL
 
@@ -17,6 +19,7 @@ BLIND = 1.0
 STRAIGHTENS = {"gamma_v": 1.0, "gamma_r": -1.0}  # the sign that a hull gives them
 ON_EVERY_HULL = {"Y_uv": "drift pushes it aside", "N_ur": "its own turning is damped"}  # by its lift
 ENOUGH = 5  # reference voyages from which twin diagnose names more (docs/results/judgement.md)
+LITTLE = 1.0 / 3.0  # of the resistance that its particulars give, below which it is not believed
 NIL = 0.01  # of what its particulars give, below which a derivative is as good as none
 WRONG_SIGN_SE = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
@@ -29,14 +32,16 @@ def doubts(
     usual: Sequence[Mapping[str, Any]] = (),
     between: Mapping[str, float] = MappingProxyType({}),
     voyages: int = ENOUGH,
+    resistance: tuple[float, float] | None = None,
 ) -> list[str]:
     """Sentences; none when the calibration is as it should be. `usual`: lasting effects that it shows;
     `between`: by how many widths of their priors numbers differ from voyage to voyage; `voyages`: how many
-    it was fitted to."""
+    it was fitted to; `resistance`: at service speed before and after [N]."""
     return [
         *_stopped(derivatives),
         *_backwards(derivatives),
         *_without_lift(derivatives),
+        *_without_resistance(resistance),
         *_no_better(held_out),
         *_coarse(share),
         *_ordered(usual),
@@ -87,6 +92,26 @@ def _without_lift(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
         "voyages with turns both ways on other courses, and with the wind recorded"
         for d in derivatives
         if d["name"] in ON_EVERY_HULL and d["excited"] and abs(d["value"]) < NIL * abs(d["before"])
+    ]
+
+
+def resistance_of(ship: Ship) -> float:
+    """The calm-water resistance of its hull at service speed [N]."""
+    return -float(core.damping(ship.U_0, 0.0, 0.0, Model.of(ship).c)[0])
+
+
+def _without_resistance(resistance: tuple[float, float] | None) -> list[str]:
+    """Most of what holds a hull back is gone: then the turns that were recorded are not what drives it."""
+    if resistance is None or resistance[1] > LITTLE * resistance[0]:
+        return []
+    before, after = resistance
+    share, kN = (
+        percent(after / before),
+        f"{num(after / 1e3, 3)} kN; by the particulars {num(before / 1e3, 3)} kN",
+    )
+    return [
+        f"of the resistance at service speed {share} is left ({kN}): what was recorded of the propeller does "
+        "not tell its thrust. Of a controllable pitch record the pitch too (docs/actuators.md)"
     ]
 
 
