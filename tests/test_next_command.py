@@ -13,12 +13,18 @@ from twin.commands.next_command import (
     after_instruments,
     after_map,
 )
+from twin.physics.ship import load, save
 
 
 def asked(verdict, lasting=(), manoeuvre=None):
     """What a diagnosis holds of that."""
     sail = {"manoeuvre": manoeuvre} if manoeuvre else None
-    return {"verdict": verdict, "answer": {"lasting": list(lasting)}, "next_manoeuvre": sail}
+    return {
+        "verdict": verdict,
+        "answer": {"lasting": list(lasting)},
+        "next_manoeuvre": sail,
+        "calibrated": True,
+    }
 
 
 @pytest.mark.parametrize("verdict", ["undecided", "unknown"])
@@ -57,3 +63,9 @@ def test_every_next_command_takes_a_file_name_as_one_word_whatever_stands_in_it(
         assert {voyage, ship} <= set(shlex.split(said))
     assert voyage in shlex.split(after_import(voyage, None))
     assert {voyage, ship} <= set(shlex.split(after_map([voyage], ship)))
+
+
+def test_a_ship_that_was_never_calibrated_is_calibrated_first(tmp_path):
+    save(load("kvlcc2"), tmp_path / "ship.toml")
+    first = asked("unknown") | {"calibrated": False}
+    assert "twin calibrate ref-1.mcap" in after_diagnose(["a.mcap"], str(tmp_path / "ship.toml"), first)

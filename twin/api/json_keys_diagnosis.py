@@ -115,6 +115,7 @@ DIAGNOSE = (
     JsonKey("floor.temper", "-", "what the log likelihood is divided by"),
     JsonKey("voyages[]", "", "names of the voyages"),
     JsonKey("references[]", "", "names of the reference voyages", "some were given"),
+    JsonKey("calibrated", "", "whether the ship was calibrated, or reference voyages were given"),
     *WAVES_AND_JUMPS,
     JsonKey("identifiability.*", "", "what a voyage can tell at all", "--identifiability"),
     *CHECKS,

@@ -19,10 +19,9 @@ def after_import(voyage: str, ship: str | None) -> str:
     return f"{why}, then {fit}; after that, {typed('diagnose', 'LATER.mcap', '--ship', better)}"
 
 
-def after_map(files: Sequence[str], made: str | None) -> str:
+def after_map(files: Sequence[str], to: str | None) -> str:
     """A map that was proposed is confirmed by a person."""
-    ready = typed("import", *files, "--map", str(made), "-o", "VOYAGE.mcap")
-    return f"next: read and correct it, then {ready}"
+    return f"next: read and correct it, then {typed('import', *files, '--map', str(to), '-o', 'VOYAGE.mcap')}"
 
 
 def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None, faults: bool) -> str:
@@ -40,7 +39,9 @@ def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) 
 
 
 def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
-    """What to sail, or to ask together, where voyages cannot tell; what to add where one may be."""
+    """What to sail, to ask together or to add; a calibration before all, where the ship never had one."""
+    if not result["calibrated"]:
+        return after_import(voyages[0], ship)
     of, then = ("--ship", ship), result["next_manoeuvre"]
     sail = then and f"sail {then['manoeuvre']}, then twin diagnose with that voyage too"
     now = "" if sail else typed("compare", *voyages, *of, "--report", "compare.html")
@@ -55,6 +56,5 @@ def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any])
 
 def add_typed(args: argparse.Namespace) -> str:
     """What was typed, for the page."""
-    proof = ["--held-out", *args.held_out] if args.held_out else ["--cross-validated"] * args.cross_validated
-    files = ["--ship", args.ship, "--voyage", *args.voyage, *proof, "-o", args.output]
-    return typed("add", *args.effects, *files)
+    by = ["--held-out", *args.held_out] if args.held_out else ["--cross-validated"] * args.cross_validated
+    return typed("add", *args.effects, "--ship", args.ship, "--voyage", *args.voyage, *by, "-o", args.output)

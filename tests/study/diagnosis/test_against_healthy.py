@@ -51,4 +51,5 @@ def test_enough_references_ask_for_no_more():
 
 
 def test_a_ship_file_without_scores_says_what_to_do():
-    assert "calibrate again" in healthy_in_words({"p_value": None})
+    assert "calibrate again" in healthy_in_words({"p_value": None, "calibrated": True})
+    assert "never calibrated" in healthy_in_words({"p_value": None, "calibrated": False})

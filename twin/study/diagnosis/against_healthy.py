@@ -4,6 +4,10 @@ from typing import Any
 
 from twin.num import num
 
+UNCALIBRATED = (
+    "careful: this ship was never calibrated, so that what is missing may be no more than its first "
+    "estimates, and every size is rough. Calibrate it first."
+)
 ONE_IN = 20  # healthy voyages, one of which is rare: the 95 % of every interval
 
 
@@ -11,6 +15,8 @@ def healthy_in_words(result: dict[str, Any]) -> str:
     """Whether the voyages are more unusual than this ship's healthy ones, and how many more of these would be
     needed to tell."""
     if result.get("p_value") is None:
+        if not result["calibrated"]:
+            return UNCALIBRATED
         return (
             "Against healthy voyages: not computed, the ship file lacks the scores of its reference voyages "
             "(calibrate again)."

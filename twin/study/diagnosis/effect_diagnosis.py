@@ -38,6 +38,7 @@ from twin.study.diagnosis.verdict import (
 )
 from twin.study.estimation.start import waves_on
 from twin.study.reference.healthy import Healthy
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.jumps import jumps_on
 
 SCHEMA_VERSION = 1
@@ -92,6 +93,7 @@ def diagnose(
         "waves": waves_on(case.tracks),
         "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],
+        "calibrated": bool(references) or noise_model_of(ship) is not None,
         "data_checks": checks,
         "facts": considered.facts.as_json(),
     }

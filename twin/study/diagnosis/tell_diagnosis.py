@@ -20,7 +20,8 @@ SOME = 0.5  # probability from which a kind of weather is more than what any day
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
-    lines = [*whose(result["data_checks"]), result["sentence"], ""]
+    lines = [*whose(result["data_checks"]), result["sentence"]]
+    lines += [""] if result["calibrated"] else [healthy_in_words(result), ""]
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
     resembling = [line for c in result["resembles"] for line in candidate_lines(c)]
     known = [line for c in result["candidates"] for line in candidate_lines(c) + _not_named(c, result)]
@@ -35,7 +36,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         f"nothing of ship and instruments missing: {nothing}   something unknown: {unknown}   (each as often "
         "as on random ships with such an answer)"
     )
-    lines.append(healthy_in_words(result))
+    lines += [healthy_in_words(result)] * result["calibrated"]
     if result["next_manoeuvre"]:
         lines += ["", to_sail(result["next_manoeuvre"])]
     if result["not_judged"]:
