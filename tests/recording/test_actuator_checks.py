@@ -17,6 +17,7 @@ from twin.recording.checks.standstill import actuator_zero
 from twin.recording.checks.steps import heading_steps
 from twin.recording.checks.undo import HEADING
 from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.checks.wirings import wirings
 from twin.recording.voyage import Voyage
 
 SEED = 4242
@@ -43,6 +44,23 @@ def test_a_mistake_of_the_wiring_is_named_and_undone(kind, what, plant, words):
     assert found.unusable and f"{words}, that is believed" in found.text
     if "90 deg" not in what:
         assert answer(replace(wrong, columns=plant(dict(wrong.columns))), ship_of(kind)).ok
+
+
+def test_only_what_turns_all_round_may_be_counted_from_elsewhere():
+    """Test: the wirings tried of two outboards, whose angle is a rudder's, of four azimuths, and of both
+    beside each other. Expected: of the outboards' angles none but the mirrored one."""
+    outboards, azimuths = (ship_of(kind).actuators for kind in ("outboards", "azimuths"))
+
+    def offsets(actuators):
+        return {w.text for w in wirings(actuators) if "offset" in w.fix}
+
+    assert offsets(outboards) == set() and "port is positive to port" in " ".join(
+        w.text for w in wirings(outboards)
+    )
+    assert offsets((*outboards, *azimuths)) == {
+        text.replace("each that turns", "each that turns all round") for text in offsets(azimuths)
+    }
+    assert any("each that turns is 180 deg off" in text for text in offsets(azimuths))
 
 
 def test_a_sway_that_the_yaw_contradicts_proves_no_wiring():

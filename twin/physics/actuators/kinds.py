@@ -118,7 +118,8 @@ ForceOf = Callable[[OneActuator, Orders, Number, Number, Number, ShipLike], core
 class Kind(NamedTuple):
     """`needs`: attributes that must be recorded beside one that says how hard it pushes; `legs`: whether what
     carries it turns with it; `reads`: the ship's derivatives on which its force depends; `noun`: what a
-    seafarer calls it; `turned`: what its angle is of, where that is a part of its own."""
+    seafarer calls it; `turned`: what its angle is of, where that is a part of its own; `all_round`: whether
+    it turns all round, not to either side of amidships as a rudder does."""
 
     force: ForceOf
     needs: tuple[str, ...]
@@ -128,6 +129,7 @@ class Kind(NamedTuple):
     reads: tuple[str, ...] = ()
     noun: str = "thruster"
     turned: str = ""
+    all_round: bool = False
 
 
 def push(a: OneActuator, orders: Orders, u_a: Number, ship: ShipLike) -> Number:
@@ -269,6 +271,7 @@ KINDS: dict[str, Kind] = {
         "turns all round; its angle: where it pushes the ship to",
         True,
         noun="azimuth thruster",
+        all_round=True,
     ),
     "waterjet": Kind(steered, ("angle",), (), "its angle is counted like a rudder's", noun="waterjet"),
     "outboard": Kind(outboard, ("angle",), (), "its angle is counted like a rudder's", True, noun="outboard"),

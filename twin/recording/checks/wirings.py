@@ -14,14 +14,17 @@ import numpy as np
 from twin.num import as_given
 from twin.physics.actuators import Actuator
 from twin.physics.actuators.actuator_channels import DRIVES
-from twin.physics.actuators.kinds import SPAN_US, STOP_US
+from twin.physics.actuators.kinds import KINDS, SPAN_US, STOP_US
 
 OrderArrays = Mapping[str, np.ndarray]
 Undo = Callable[[OrderArrays], OrderArrays]
 RIGHT = "as recorded"
-# what an angle may be counted as: (words, true angle of the recorded one, what the map needs)
-ANGLES: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str], ...] = (
-    ("is positive to port", lambda x: -x, "sign = -1"),
+AngleCount = tuple[str, Callable[[np.ndarray], np.ndarray], str]
+# what an angle may be counted as: (words, true angle of the recorded one, what the map needs); of what stands
+# to either side of amidships, as a rudder and a nozzle do
+MIRRORED: tuple[AngleCount, ...] = (("is positive to port", lambda x: -x, "sign = -1"),)
+# and beside it of what turns all round
+FROM_ELSEWHERE: tuple[AngleCount, ...] = (
     ("is 180 deg off", lambda x: x + pi, "offset = 180"),
     ("is 90 deg too small", lambda x: x + pi / 2, "offset = 90"),
     ("is 90 deg too large", lambda x: x - pi / 2, "offset = -90"),
@@ -100,11 +103,19 @@ def stop(a: Actuator, attribute: str) -> float:
 
 def _turned(actuators: Sequence[Actuator]) -> Iterator[Wiring]:
     turning = [a for a in actuators if "angle" in a.attributes]
+    all_round = [a for a in turning if KINDS[a.kind].all_round]
+    yield from _counted(turning, "the angle of each that turns", MIRRORED)
+    each = "the angle of each that turns" + " all round" * (len(all_round) < len(turning))
+    yield from _counted(all_round, each, FROM_ELSEWHERE)
+
+
+def _counted(turning: Sequence[Actuator], each: str, counts: Sequence[AngleCount]) -> Iterator[Wiring]:
+    """Each by itself and all together, their angles counted in each of these ways."""
     groups = [(a,) for a in turning] + ([tuple(turning)] if len(turning) > 1 else [])
     for parts in groups:
-        who = f"the angle of {parts[0].name}" if len(parts) == 1 else "the angle of each that turns"
+        who = f"the angle of {parts[0].name}" if len(parts) == 1 else each
         columns = ", ".join(c for a in parts for c in a.columns() if "angle" in c)
-        for words, turn, fix in ANGLES:
+        for words, turn, fix in counts:
 
             def undo(
                 told: OrderArrays,
