@@ -8,6 +8,7 @@ import numpy as np
 from twin.errors import DataError
 from twin.live.signals.channels import of_actuators
 from twin.recording.mapping import PLACES
+from twin.recording.out_of_range import out_of_range_in_words
 from twin.recording.place import CHART, FRAMED, derive, present
 from twin.recording.raw import Raw
 from twin.recording.samples import plausible
@@ -43,8 +44,10 @@ def finished(raw: Raw, controls: bool = True) -> Finished:
         raw.notes.append(how)
     refuse_standing(raw.path, raw.time_s)
     for name, values in raw.columns.items():
-        raw.columns[name], blanked = plausible(name, values, raw.lines)
+        raw.columns[name], blanked, lie = plausible(name, values, raw.lines)
         raw.notes += blanked
+        if lie:
+            raw.meta["out_of_range"] = raw.meta.get("out_of_range", {}) | {name: lie}
     require(raw, controls)
     columns, derived = derive(raw.time_s, raw.columns)
     meta = {k: v for k, v in raw.meta.items() if v}
@@ -96,6 +99,12 @@ def require(raw: Raw, controls: bool = True) -> None:
         said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + [
             n[:200] for n in raw.notes if tells_why(n, missing)
         ][:4]
+        outside, units = raw.meta.get("out_of_range", {}), raw.meta.get("units", {})
+        said += [
+            out_of_range_in_words(n, outside[n], units.get(n)).removesuffix(".")
+            for n in missing
+            if n in outside
+        ]
         steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
         needs = ", ".join(missing)
         for control in [name for name in missing if name in CONTROLS][-1:]:
@@ -106,5 +115,5 @@ def require(raw: Raw, controls: bool = True) -> None:
             f"in a map which one it is (twin import --map; under [columns] {missing[0].split()[0]} = "
             f'"COLUMN" leaves the others as they are; --suggest-map writes one).{steady}'
             + " What is judged without the controls is imported with "
-            "--without-controls." * (set(missing) <= set(CONTROLS))
+            "--without-controls." * (set(missing) <= set(CONTROLS) - set(outside))
         )

@@ -5,6 +5,7 @@ import numpy as np
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.sentinels import CODES, GENERIC, IN_RANGE_TOO
 from twin.num import as_given
+from twin.recording.out_of_range import where_most_lie
 from twin.recording.resample import continuous
 
 LEAST_SAMPLES = 20  # samples, to know what is usual
@@ -12,10 +13,12 @@ USUAL_STEPS_SHARE = 0.97  # share of the steps from sample to sample that count 
 FAR_M = 1e5  # positions farther from zero than this count from another origin (UTM)
 
 
-def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """The samples a ship can measure (others NaN), and a sentence for each kind that was blanked. All
-    (N,), in the channel's unit."""
-    ch = BY_NAME[name]
+def plausible(
+    name: str, values: np.ndarray, lines: np.ndarray
+) -> tuple[np.ndarray, list[str], tuple[float, float] | None]:
+    """The samples a ship can measure (others NaN), a sentence for each kind that was blanked, and where most
+    samples lie, if outside what a ship can have. All (N,), in the channel's unit."""
+    ch, samples = BY_NAME[name], values
     not_available = sentinel(name, values)
     values = np.where(not_available, np.nan, values)
     with np.errstate(invalid="ignore"):
@@ -29,7 +32,7 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
             f"{name}: {count(outside, lines)} outside [{as_given(ch.low)}, {as_given(ch.high)}], the first "
             f"{as_given(values[i])}: wrong unit?"
         )
-    return np.where(outside, np.nan, values), notes
+    return np.where(outside, np.nan, values), notes, where_most_lie(samples, outside)
 
 
 def sentinel(name: str, values: np.ndarray) -> np.ndarray:

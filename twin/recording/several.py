@@ -73,7 +73,9 @@ def joined(paths: Sequence[Path], by: Map | None) -> Raw:
     frames = {name: c for _, own in maps for name, c in own.columns.items()}
     whole = replace(by or Map(), columns={n: Column(n, frame=frames[n].frame) for n in columns}, time=None)
     clock = clock_from_numbers(paths[0], time_s, TimeColumn()) if starts > 1e8 else TimeAxis(time_s)
-    return through(paths[0], table, clock, whole, notes, {"files": [str(p.path) for p, _ in maps]})
+    units = {name: c.unit for name, c in frames.items() if c.unit}
+    facts = {"files": [str(p.path) for p, _ in maps], "units": units}
+    return through(paths[0], table, clock, whole, notes, facts)
 
 
 def own_maps(parts: Sequence[Part], notes: list[str]) -> list[tuple[Part, Map]]:

@@ -33,7 +33,8 @@ class Voyage:
     """Samples at `time_s` (N,) [s, increasing]; `columns`: (N,) float64 in the unit of the channel's name.
 
     `meta` says where it came from: `source`, `map`, `ship`, `datum` {latitude_deg, longitude_deg},
-    `start_time_utc`, `derived` {column: how}. What is not known is not there.
+    `start_time_utc`, `derived` {column: how}, `out_of_range` {column: (lowest, highest)} where most samples
+    were blanked. What is not known is not there.
     """
 
     name: str

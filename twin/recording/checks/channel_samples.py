@@ -1,18 +1,26 @@
 """Single channels: samples that are missing, implausible, alone, or that stand still while the ship moves."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from twin.live.signals.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME, of_actuators
 from twin.num import as_given
-from twin.recording.checks.check_result import Check, doubtful, good
+from twin.physics.actuators import KINDS
+from twin.physics.ship import Ship
+from twin.recording.checks.check_result import Check, doubtful, good, wrong
 from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.out_of_range import out_of_range_in_words, where_most_lie
 from twin.recording.samples import spikes as spike_rows
+from twin.recording.units import unit_of
+from twin.recording.unknown_controls import CONTROLS, of_ship
 from twin.recording.voyage import Voyage
 
 JUMPY = frozenset(
     ("rudder_angle_deg", "propeller_rate_rpm", "true_wind_direction_deg", "apparent_wind_angle_deg")
 )
 # orders jump, and a light wind comes from anywhere: a lonely sample of these is no sign of a bad sensor
+ABEAM = 0.25  # of a turn from amidships: beyond it no rudder and no nozzle stands
 
 
 def missing_samples(view: VoyageView) -> Check:
@@ -56,15 +64,57 @@ def hole(v: Voyage, name: str) -> str:
 
 
 def plausible_values(view: VoyageView) -> Check:
-    """What reading blanked because no ship measures it."""
+    """What reading blanked because no ship measures it, and rudders that stand where none can."""
+    lost, (never, beyond) = lost_controls(view), beyond_amidships(view)
+    if lost or never:
+        return wrong("plausible_values", " ".join([*lost, *never]))
     notes = [n for n in view.voyage.meta.get("notes", ()) if "blanked" in n]
-    if any("outside" in n for n in notes):
-        said = "; ".join(notes)
+    if beyond or any("outside" in n for n in notes):
+        said = "; ".join([*notes, *beyond])
         return doubtful(
             "plausible_values",
             f"{said}{'.' * (not said.endswith('?'))} In the map: unit, or [file] missing = [...].",
         )
     return good("plausible_values", "; ".join(notes) or "every sample is one that a ship can have.")
+
+
+def lost_controls(view: VoyageView) -> list[str]:
+    """A sentence for each control that the ship file needs (without one: that was recorded) of which reading
+    blanked most samples, for they lie outside what a ship can have."""
+    v = view.voyage
+    outside, units = v.meta.get("out_of_range", {}), v.meta.get("units", {})
+    needed = of_ship(view.ship) if view.ship else (*CONTROLS, *of_actuators(outside))
+    return [out_of_range_in_words(n, outside[n], units.get(n)) for n in needed if n in outside]
+
+
+def beyond_amidships(view: VoyageView) -> tuple[list[str], list[str]]:
+    """What stands to either side of amidships, and was recorded beyond ABEAM: a sentence for each of which
+    most samples lie there, and one for each of which some do."""
+    most, some = list[str](), list[str]()
+    for name, what in _to_either_side(view.ship):
+        x, ch = view.voyage[name], BY_NAME[name]
+        beyond = np.abs(np.mod(x / ch.turn + 0.5, 1.0) - 0.5) > ABEAM
+        if not beyond.any():
+            continue
+        low, high, limit = (as_given(y, 3) for y in (min(x[beyond]), max(x[beyond]), ABEAM * ch.turn))
+        text = (
+            f"{name}: {np.count_nonzero(beyond)} of {np.count_nonzero(np.isfinite(x))} samples, {low} to "
+            f"{high}, more than {limit} {unit_of(name)} from amidships, where no {what} stands"
+        )
+        if where_most_lie(x, beyond) is None:
+            some.append(text)
+        else:
+            most.append(f"{text}. In the map: the right unit, and an offset that leaves amidships at 0.")
+    return most, some
+
+
+def _to_either_side(ship: Ship | None) -> Iterator[tuple[str, str]]:
+    """The channel of each angle that is counted as a rudder's, and what it is the angle of."""
+    for a in ship.actuators if ship is not None else ():
+        kind = KINDS[a.kind]
+        for name, attribute in zip(a.columns(), a.attributes, strict=True):
+            if attribute == "angle" and not kind.all_round:
+                yield name, kind.turned or kind.noun
 
 
 def spikes(view: VoyageView) -> Check:
