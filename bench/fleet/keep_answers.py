@@ -1,7 +1,7 @@
 """Answers of the fleet put into docs/results, of which `python docs/results_page.py` makes the page on the
 judgement: `python -m bench.fleet keep --first FOLDER`; or put beside those, such as voyages of them that were
-asked again: `python -m bench.fleet keep --beside --again FOLDER`; or in a table of their own, to which nothing
-is fitted: `python -m bench.fleet keep --apart new-ships --first FOLDER`."""
+asked again: `python -m bench.fleet keep --beside --again FOLDER`; or in a table of their own, to which
+nothing is fitted: `python -m bench.fleet keep --apart new-ships --first FOLDER`."""
 
 import argparse
 import json
