@@ -81,3 +81,20 @@ def test_a_time_of_a_number_and_a_text_that_do_not_fit_is_refused_by_their_names
     path = parquet([day] * columns["time_s"].size, ["12:30:05"] * columns["time_s"].size)
     by = parse_map({"time": {"column": ["day", "clock"], "format": form}}, "m.toml")
     refused(path, "'day'", "'clock'", "as text", by=by)
+
+
+def test_year_to_second_in_columns_of_numbers_are_one_clock_by_their_format(tmp_path, columns):
+    """Test: a packed table that keeps year, month, day, hour, minute and second as numbers of their own. Expected:
+    the moments that they are, over midnight, and not their sum."""
+    import pandas as pd
+
+    stamps = [START + timedelta(seconds=round(float(t))) for t in columns["time_s"]]
+    parts = ("year", "month", "day", "hour", "minute", "second")
+    table = {name: [getattr(s, name) for s in stamps] for name in parts}
+    rest = {n: x for n, x in columns.items() if n != "time_s"}
+    keep = [k for k, s in enumerate(stamps) if k == 0 or s > stamps[k - 1]]
+    pd.DataFrame(table | rest).iloc[keep].to_parquet(path := tmp_path / "parts.parquet")
+    by = parse_map({"time": {"column": list(parts), "format": "%Y %m %d %H %M %S"}}, "m.toml")
+    v = read_voyage(path, by)
+    assert v.meta["start_time_utc"] == "2026-11-25T23:59:30Z"
+    np.testing.assert_allclose(v.time_s, [(stamps[k] - START).total_seconds() for k in keep], atol=1e-6)

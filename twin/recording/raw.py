@@ -70,9 +70,9 @@ def about(path: Path, clock: TimeAxis) -> dict[str, Any]:
 
 
 def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> TimeAxis:
-    """The clock of a table: numbers (several are added up by `factors`), moments that a packed table keeps,
-    or text. DataError: a number and a text among them do not fit."""
-    if all(s in table.numbers for s in stamps):
+    """The clock of a table: numbers (several are added up by `factors`, or are parts of a date by `format`),
+    moments that a packed table keeps, or text. DataError: a number and a text among them do not fit."""
+    if all(s in table.numbers for s in stamps) and not parts_of_a_date(table, stamps, spec):
         if spec.is_text:
             spec = TimeColumn(spec.column)
         return clock_from_numbers(path, sum_of([table.numbers[s] for s in stamps], spec.factors), spec)
@@ -84,9 +84,11 @@ def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColu
 
 
 def stamps_as_text(path: Path, table: Table, stamps: tuple[Key, ...], form: str) -> list[list[str]]:
-    """The columns of a time as text, of which some may be moments that a packed table keeps: of these the
-    day, for the time of day stands beside it. DataError: they are no moments, or `form` has not a part for
-    each column."""
+    """The columns of a time as text: numbers that are parts of a date as they are; of moments that a packed
+    table keeps the day, for the time of day stands beside it as text. DataError: they are no moments, or
+    `form` has not a part for each column."""
+    if all(s in table.numbers for s in stamps):
+        return [[f"{x:.0f}" if x == np.rint(x) else repr(float(x)) for x in table.numbers[s]] for s in stamps]
     forms = form.split(" ") if form else ["%Y-%m-%d"] * len(stamps)
     kept = {s: table.numbers[s] for s in stamps if s in table.numbers}
     if kept and (len(forms) != len(stamps) or any(np.any(x < EPOCH_S) for x in kept.values())):
@@ -98,6 +100,11 @@ def stamps_as_text(path: Path, table: Table, stamps: tuple[Key, ...], form: str)
         )
     days = {s: [day(x, forms[stamps.index(s)]) for x in moments] for s, moments in kept.items()}
     return [(days if s in kept else table.texts)[s] for s in stamps]
+
+
+def parts_of_a_date(table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> bool:
+    """Whether columns of numbers are year, month, day and so on, which the format of a text tells apart."""
+    return bool(spec.format) and len(stamps) > 1 and all(np.all(table.numbers[s] < EPOCH_S) for s in stamps)
 
 
 def opened_table(kind: Format, path: Path) -> Packed:
