@@ -79,9 +79,10 @@ def test_where_nothing_shows_the_manoeuvre_is_one_that_would_show_more(case):
     assert showing(case, case.model, []) is None
 
 
-def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_without_another():
-    alone = reason({"zigzag 10/10": 3.0}, "zigzag 10/10")
-    beside = reason({"zigzag 10/10": 3.0, "turning circles": 1.0}, "zigzag 10/10")
+def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_without_another(tanker):
+    model = Model.of(tanker)
+    alone = reason({"zigzag 10/10": 3.0}, "zigzag 10/10", model)
+    beside = reason({"zigzag 10/10": 3.0, "turning circles": 1.0}, "zigzag 10/10", model)
     assert "runs away" in alone and "next best" not in alone
     assert "next best: turning circles" in beside
 
@@ -123,3 +124,13 @@ def test_no_ship_is_asked_to_sail_with_what_it_has_not(tanker):
     assert asked(Model.of(tanker)) == set(MANOEUVRES) - of_parts - tunnels
     assert asked(Model.of(from_sheet("catamaran"))) == set(MANOEUVRES) - tunnels
     assert asked(Model.of(from_sheet("ferry2"))) == set(MANOEUVRES)
+
+
+@pytest.mark.parametrize("name", ["zigzag 10/10", "zigzag 20/20"])
+def test_azimuths_are_spoken_of_only_where_the_ship_has_some(tanker, name):
+    """Test: a tanker with a rudder, a ferry with two screws and their rudders, and one with azimuths. Expected:
+    that all azimuths work alike is said of the last alone."""
+    ferry, azimuths = (Model.of(from_sheet(sheet)) for sheet in ("ferry2", "ferry4"))
+    says = [reason({name: 3.0}, name, model) for model in (Model.of(tanker), ferry, azimuths)]
+    assert ["azimuth" in said for said in says] == [False, False, True]
+    assert all("deg of helm" in said for said in says)

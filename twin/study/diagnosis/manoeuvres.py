@@ -69,8 +69,9 @@ def _in_turn(others: float) -> Alone:
 
 
 class Manoeuvre(NamedTuple):
-    """What the helmsman orders, in words what it is, and on a ship of actuators what single ones get beside:
-    `alone` those that drive it, `side` (of lengths sailed, a share of full) its tunnel thrusters."""
+    """What the helmsman orders, in words what it is (`{azimuths}`: what those do, where a ship has several),
+    and on a ship of actuators what single ones get beside: `alone` those that drive it, `side` (of lengths
+    sailed, a share of full) its tunnel thrusters."""
 
     order: Order
     doc: str
@@ -82,6 +83,11 @@ class Manoeuvre(NamedTuple):
         parts, drives = len(model.ship.actuators), len(_drives(model))
         return (self.alone is None or drives > 1) and (self.side is None or parts > drives)
 
+    def words(self, model: Model) -> str:
+        """What it is, for the helmsman of this ship."""
+        several = sum(a.kind == "azimuth" for a in model.ship.actuators) > 1
+        return self.doc.format(azimuths=" (azimuths: all alike)" if several else "")
+
 
 def _drives(model: Model) -> list[str]:
     """The actuators that drive the ship ahead."""
@@ -91,13 +97,11 @@ def _drives(model: Model) -> list[str]:
 MANOEUVRES: dict[str, Manoeuvre] = {
     "zigzag 10/10": Manoeuvre(
         _zigzag(10 * DEG),
-        "10 deg of helm (azimuths: all alike) to each side whenever the heading has changed by 10 deg, at "
-        "constant power",
+        "10 deg of helm{azimuths} to each side whenever the heading has changed by 10 deg, at constant power",
     ),
     "zigzag 20/20": Manoeuvre(
         _zigzag(20 * DEG),
-        "20 deg of helm (azimuths: all alike) to each side whenever the heading has changed by 20 deg, at "
-        "constant power",
+        "20 deg of helm{azimuths} to each side whenever the heading has changed by 20 deg, at constant power",
     ),
     "turning circles": Manoeuvre(
         lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0),
@@ -210,13 +214,14 @@ def separation(case: Case, track: Track, first: str, second: str, z: np.ndarray)
     return 0.5 * (alone - mimic)
 
 
-def reason(scores: Mapping[str, float], best: str) -> str:
-    """Why that manoeuvre, in words (`scores`: log odds of those that the model can be sailed through)."""
+def reason(scores: Mapping[str, float], best: str, model: Model) -> str:
+    """Why that manoeuvre, in words for this ship (`scores`: log odds of those that the model can be sailed
+    through)."""
     rest = sorted((name for name in scores if name != best), key=lambda name: -scores[name])
     other = (
         f"next best: {rest[0]}, {_odds(scores[rest[0]])}" if rest else "in every other the model runs away"
     )
-    what = MANOEUVRES[best].doc
+    what = MANOEUVRES[best].words(model)
     return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two ({other})"
 
 
@@ -234,7 +239,7 @@ def next_manoeuvre(
     best = max(scores, key=lambda name: scores[name], default="")
     if not best or scores[best] < 1.0:
         return None
-    return {"separates": [first, second], "shows": [], "manoeuvre": best, "why": reason(scores, best)}
+    return {"separates": [first, second], "shows": [], "manoeuvre": best, "why": reason(scores, best, model)}
 
 
 def showing(case: Case, model: Model, unseen: Sequence[str]) -> dict[str, object] | None:
@@ -245,7 +250,7 @@ def showing(case: Case, model: Model, unseen: Sequence[str]) -> dict[str, object
     if not best or not shown[best]:
         return None
     of = f"{len(shown[best])} of the {len(unseen)} that could not be seen"
-    why = f"{MANOEUVRES[best].doc}: it would show {of}"
+    why = f"{MANOEUVRES[best].words(model)}: it would show {of}"
     return {"separates": [], "shows": shown[best], "manoeuvre": best, "why": why}
 
 
