@@ -53,11 +53,13 @@ def test_every_next_command_takes_a_file_name_as_one_word_whatever_stands_in_it(
     args = Namespace(
         effects=["Wind"], ship=ship, voyage=[voyage], held_out=[voyage], cross_validated=True, output="b.toml"
     )
+    asking = Namespace(voyages=[voyage], ship=ship, output=None)
     of_sensors = {"horizons": [{"noise_floor": {"of": "sensors"}}]}
     for said in (
         after_compare([voyage], ship, of_sensors),
-        after_instruments([voyage], ship, None, True),
-        after_instruments([voyage], ship, None, False),
+        after_instruments(asking, True, True),
+        after_instruments(asking, True, False),
+        after_instruments(asking, False, False),
         add_typed(args),
     ):
         assert {voyage, ship} <= set(shlex.split(said))
@@ -69,3 +71,15 @@ def test_a_ship_that_was_never_calibrated_is_calibrated_first(tmp_path):
     save(load("kvlcc2"), tmp_path / "ship.toml")
     first = asked("unknown") | {"calibrated": False}
     assert "twin calibrate ref-1.mcap" in after_diagnose(["a.mcap"], str(tmp_path / "ship.toml"), first)
+
+
+@pytest.mark.parametrize("ship, output", [("s.toml", "b.toml"), ("s.toml", None), (None, "map.toml")])
+def test_after_a_fault_that_is_not_told_from_another_no_file_is_named_that_was_not_written(ship, output):
+    """Expected: the same voyage with one of another day, and a ship file to be written; once a fault is told, a
+    comparison with the file that has it, where one was written."""
+    asking = Namespace(voyages=["a.mcap"], ship=ship, output=output)
+    to = f"--ship {ship or 'SHIP.toml'} -o {(ship and output) or 'corrected.toml'}"
+    assert after_instruments(asking, True, False) == f"twin instruments a.mcap OTHER-DAY.mcap {to}"
+    written = ship and output
+    compared, corrected = "twin compare a.mcap --ship b.toml", f"twin instruments a.mcap {to}"
+    assert after_instruments(asking, True, True) == (compared if written else corrected)

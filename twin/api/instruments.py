@@ -14,7 +14,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.instrument_estimate import Instruments, estimate
-from twin.study.instruments.instrument_lines import amount, as_json, terminal_lines
+from twin.study.instruments.instrument_lines import ambiguities, amount, as_json, either, terminal_lines
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -36,23 +36,33 @@ class InstrumentCheck(Result):
         return [str(f["fault"]) for f in self.data["faults"]]
 
     @property
+    def distinct(self) -> list[str]:
+        """Those of them that these voyages tell from every other: what `corrected` and `as_map` write."""
+        return [str(f["fault"]) for f in self.data["faults"] if not f["or_instead"]]
+
+    @property
     def effects(self) -> list[str]:
         """The same as effects of the catalogue; a fault that no effect describes is left out."""
         return list(dict.fromkeys(f["effect"] for f in self.data["faults"] if f["effect"]))
 
     def corrected(self, ship: Ship) -> Ship:
-        """The ship with the faults that were seen as effects of its instruments. SettingsError when a number
-        lies outside its effect's box."""
+        """The ship with the `distinct` faults as effects of its instruments; what its effect cannot hold
+        is left out (`not_held`), and so is what these voyages do not tell from another (`ambiguous`)."""
         return corrected(ship, self.found)[0]
 
     def not_held(self, ship: Ship) -> list[str]:
-        """The numbers that were seen and that no effect of the catalogue holds, each with its size and
+        """The numbers of `distinct` faults that no effect of the catalogue holds, each with its size and
         unit."""
         left = corrected(ship, self.found)[1]
         return [f"{e.unknown.meaning} ({amount(e.value, e.unknown.unit)})" for e in left]
 
+    def ambiguous(self) -> list[str]:
+        """Of each fault that was seen and that these voyages do not tell from another: from which, and what
+        would tell them apart."""
+        return ambiguities(self.found)
+
     def as_map(self) -> str:
-        """The lines of a map that take the constants off that were seen. SettingsError when there are
+        """The lines of a map that take the constants of `distinct` faults off. SettingsError when there are
         none."""
         return as_map(self.found)
 
@@ -72,10 +82,13 @@ class InstrumentCheck(Result):
         from twin.report.result_page import Bars, PageTable, result_page
 
         faults = [f | {"called": f["effect"] or f["fault"]} for f in self.data["faults"]]
-        seen = ", ".join(f["words"] for f in faults) or "No instrument disagrees with the others"
+        seen = (
+            ", ".join(either(f["fault"], f["or_instead"]) for f in faults)
+            or "No instrument disagrees with the others"
+        )
         columns = {"meaning": "number", "value": "value", "lo": "from", "hi": "to", "unit": "unit"}
         more = {"seen": "seen", "unseen_below": "else less than", "hard_to_tell_from": "hard to tell from"}
-        bayes = {"log_bayes_factor": "log Bayes factor"}
+        bayes = {"log_bayes_factor_of_any": "log Bayes factor"}
         return result_page(
             f"Instruments of {', '.join(v['name'] for v in self.data['voyages'])}",
             f"{seen[0].upper()}{seen[1:]}.",

@@ -177,7 +177,16 @@ INSTRUMENTS = (
     JsonKey("faults[].effect", "", "its effect in the catalogue; null: none", WHEN_FAULTY),
     JsonKey("faults[].words", "", "the same in words", WHEN_FAULTY),
     JsonKey(
-        "faults[].log_bayes_factor", "natural log", "how much likelier the readings are with it", WHEN_FAULTY
+        "faults[].log_bayes_factor",
+        "natural log",
+        "how much likelier the readings are with it than without, whatever is there in its place",
+        WHEN_FAULTY,
+    ),
+    JsonKey(
+        "faults[].log_bayes_factor_of_any",
+        "natural log",
+        "the same of it, or of what may be there in its place, than with none of them: seen above 5",
+        WHEN_FAULTY,
     ),
     JsonKey("faults[].or_instead[]", "", "faults that may be there in its place", "the readings do not tell"),
     JsonKey("faults[].residuals.*.without", "of `unit`", "scatter of a reading without it", "it falls"),

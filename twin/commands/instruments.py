@@ -17,8 +17,8 @@ from twin.recording.ship_file_writer import save
 
 EPILOG = """A circle to each side or a figure eight of ten minutes or more says most; rudder and shaft need
 not be recorded. -o: with --ship the ship file with what was seen as effects of its instruments; without, a
-map. Exit code 3: no fault was seen, and -o wrote no file; 4: a voyage cannot be used; 5: ship file or map
-not valid, or a map can take off nothing of what was seen (docs/instruments.md)."""
+map. Exit code 3: no fault was seen, or none is told from others, and -o wrote no file; 4: a voyage cannot be
+used; 5: ship file or map not valid, or a map can take off nothing of what was seen (docs/instruments.md)."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,17 +38,17 @@ def run(args: argparse.Namespace) -> int:
     voyages = [read_voyage(p, by, sources_of(args.source), controls=False) for p in args.voyages]
     done, page = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress), lines_to(args)
     print("\n".join(done.text()), file=page)
-    nothing_to_write = bool(args.output) and not done.faults
-    if nothing_to_write:
-        print(f"\n{args.output} was not written: no fault of an instrument was seen.", file=page)
+    if nothing_to_write := bool(args.output) and not done.distinct:
+        why = "; ".join(done.ambiguous()) or "no fault of an instrument was seen"
+        print(f"\n{args.output} was not written: {why}.", file=page)
     elif args.output:
         _write(args, ship, done)
-        print(f"\n{wrote(args.output)}", file=page)
+        print("", wrote(args.output), *done.ambiguous(), sep="\n", file=page)
     if args.json:
         command = typed("instruments", *args.voyages, *(["--ship", args.ship] if ship else []))
         answer = with_request(done, command, ship=args.ship, voyages=args.voyages)
         whole.write_json(answer.to_dict(), args.json)
-    print("\nnext:", after_instruments(args.voyages, args.ship, args.output, bool(done.faults)), file=page)
+    print("\nnext:", after_instruments(args, bool(done.faults), bool(done.distinct)), file=page)
     return 3 if nothing_to_write else 0
 
 

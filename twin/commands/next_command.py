@@ -2,7 +2,6 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from twin.commands.verb_output import typed
@@ -13,7 +12,7 @@ def after_import(voyage: str, ship: str | None) -> str:
     """The comparison; before it a calibration, where the ship never had one."""
     if not ship or "structural" in load(ship, arrays=False).notes:
         return typed("compare", voyage, "--ship", ship or "SHIP.toml")
-    better = str(Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml"))
+    better = ship.removesuffix(".toml") + "-calibrated.toml"
     fit = typed("calibrate", "ref-1.mcap", "ref-2.mcap", "...", "--ship", ship, "-o", better)
     why = "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or more)"
     return f"{why}, then {fit}; after that, {typed('diagnose', 'LATER.mcap', '--ship', better)}"
@@ -24,11 +23,12 @@ def after_map(files: Sequence[str], to: str | None) -> str:
     return f"next: read and correct it, then {typed('import', *files, '--map', str(to), '-o', 'VOYAGE.mcap')}"
 
 
-def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None, faults: bool) -> str:
-    """The same with the ship file to be corrected; a comparison, where one was written or no fault seen."""
-    if not faults or (ship and output):
-        return typed("compare", *voyages, "--ship", (faults and output) or ship or "SHIP.toml")
-    return typed("instruments", *voyages, "--ship", ship or "SHIP.toml", "-o", "corrected.toml")
+def after_instruments(args: argparse.Namespace, seen: bool, distinct: bool) -> str:
+    """A comparison, where a ship file was written or no fault seen; else what may write one."""
+    if not seen or (distinct and args.ship and args.output):
+        return typed("compare", *args.voyages, "--ship", (seen and args.output) or args.ship or "SHIP.toml")
+    to = ["--ship", args.ship or "SHIP.toml", "-o", (args.ship and args.output) or "corrected.toml"]
+    return typed("instruments", *args.voyages, *([] if distinct else ["OTHER-DAY.mcap"]), *to)
 
 
 def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:

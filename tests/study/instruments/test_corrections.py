@@ -4,13 +4,15 @@ from types import SimpleNamespace
 
 import pytest
 
+from twin.errors import SettingsError
 from twin.physics.ship import load
-from twin.study.instruments.corrections import corrected
+from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 
 
-def found_of(**numbers):
-    """Faults that were seen with these numbers, whose standard deviation is a tenth."""
+def found_of(instead=None, **numbers):
+    """Faults that were seen with these numbers, whose standard deviation is a tenth; `instead`: fault -> what may
+    be in its place."""
     unknowns = {name: UNKNOWNS[INDEX[name]] for name in numbers}
     return SimpleNamespace(
         estimates=[
@@ -18,6 +20,7 @@ def found_of(**numbers):
             for name, value in numbers.items()
         ],
         faults=tuple(u.fault for u in unknowns.values()),
+        instead={u.fault: (instead or {}).get(u.fault, ()) for u in unknowns.values()},
         own=(False,),
         readings=(SimpleNamespace(name="zigzag"),),
     )
@@ -44,3 +47,21 @@ def test_what_the_ship_file_has_within_what_one_voyage_tells_stays_for_it_may_re
     again, left = corrected(ship, found_of(log_scale=value))
     (effect,) = (e for e in again.effects if type(e).__name__ == "SpeedLogScale")
     assert effect.scale == (0.08 if kept else value) and not left
+
+
+UNTOLD = {"log_angle": ("heading_bias",), "log_bias": ("log_scale",)}
+
+
+def test_a_fault_that_the_voyages_do_not_tell_from_another_is_not_written_into_the_ship_file():
+    """Test: a log askew, or in its place a compass that is off; a gyro that surely is. Expected: the gyro alone,
+    and the log is not among what no effect could hold."""
+    ship, left = corrected(load("kvlcc2"), found_of(UNTOLD, log_angle=-0.08, gyro_bias=0.001))
+    added = {type(e).__name__ for e in ship.effects} - {type(e).__name__ for e in load("kvlcc2").effects}
+    assert added == {"GyroBias"} and left == []
+
+
+def test_a_fault_that_the_voyages_do_not_tell_from_another_is_not_taken_off_by_a_map():
+    lines = as_map(found_of(UNTOLD, log_bias=0.5, gyro_bias=0.001))
+    assert "yaw_rate_degps" in lines and "log" not in lines.split("[columns]")[1]
+    with pytest.raises(SettingsError, match="nothing was found that a map can take off"):
+        as_map(found_of(UNTOLD, log_bias=0.5))

@@ -26,15 +26,15 @@ OFFSETS = {
 
 
 def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
-    """The ship with the faults that were seen as effects of its own (those of which its file has what the
-    readings tell as they are: it may rest on more voyages); and the seen numbers that no effect of the
-    catalogue holds, or that lie outside the box of theirs."""
-    seen = _seen(found)
+    """The ship with the faults that were seen, and told from every other, as effects of its own (those of
+    which its file has what the readings tell as they are: it may rest on more voyages); and those of their
+    numbers that no effect of the catalogue holds, or that lie outside the box of theirs."""
+    numbers = _distinct(found)
     known, names = effects_of_readings(), [r.name for r in found.readings]
-    left = [e for e in seen if e.unknown.name not in known]
+    left = [e for e in numbers if e.unknown.name not in known]
     filed = {type(e): e for e in ship.effects}
-    for effect in dict.fromkeys(known[e.unknown.name] for e in seen if e not in left):
-        its = [e for e in seen if known.get(e.unknown.name) is effect]
+    for effect in dict.fromkeys(known[e.unknown.name] for e in numbers if e not in left):
+        its = [e for e in numbers if known.get(e.unknown.name) is effect]
         if effect in filed and as_filed(filed[effect], its):
             continue
         told = {e.unknown.name: (e.value, e.sd) for e in its}
@@ -75,8 +75,10 @@ def effects_of_readings() -> dict[str, type[SensorFault]]:
     return {number: e for e in reversed(faults) for number in e.by_readings}
 
 
-def _seen(found: Instruments) -> list[InstrumentEstimate]:
-    return [e for e in found.estimates if e.seen and e.unknown.fault in found.faults]
+def _distinct(found: Instruments) -> list[InstrumentEstimate]:
+    """The numbers of the faults that were seen and that the voyages tell from every other."""
+    faults = [f for f in found.faults if not found.instead[f]]
+    return [e for e in found.estimates if e.seen and e.unknown.fault in faults]
 
 
 def _boxed(effect: Effect, ship: Ship) -> Effect:
@@ -87,18 +89,19 @@ def _boxed(effect: Effect, ship: Ship) -> Effect:
 
 def as_map(found: Instruments) -> str:
     """The lines of a map that take constants off; what a map cannot say stands in it as a comment. Each
-    offset is in the unit of its channel. SettingsError: no constant that a map can take off was seen."""
+    offset is in the unit of its channel. SettingsError: no constant that a map can take off was seen, and
+    told from every other fault."""
     lines = [
         "# Found by `twin instruments`: add each `offset` to the line of that channel in your own map "
         "(docs/import.md).",
         "[columns]",
     ]
-    said = [e for e in _seen(found) if e.unknown.name in OFFSETS]
+    said = [e for e in _distinct(found) if e.unknown.name in OFFSETS]
     for e in said:
         channel, k = OFFSETS[e.unknown.name]
         entry = f'{channel} = {{ column = "{channel}", offset = {as_given(-e.value * k, 6)} }}'
         lines.append(f"{entry}  # +- {num(P95 * e.sd * k, 2)}")
-    for e in _seen(found):
+    for e in _distinct(found):
         if e not in said:
             lines.append(
                 f"# {e.unknown.name} = {amount(e.value, e.unknown.unit)}: a map cannot take it off; a "

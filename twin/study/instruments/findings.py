@@ -61,8 +61,10 @@ class Instruments:
     # from which instrument ages count; another -> how much later it is, and sd [s]
     relative: tuple[str, dict[str, tuple[float, float]]]
     log_bayes_factors: dict[str, float]
-    # fault seen -> what may be there in its place: the readings ask for one of them
+    # fault seen -> what may be there in its place, since these voyages do not tell which; () where they tell
     instead: dict[str, tuple[str, ...]]
+    # fault seen -> log Bayes factor of it, or of what may be there in its place, against none of them
+    of_any: dict[str, float]
     stream: tuple[dict[str, np.ndarray], ...]
     clock: str  # the age that is none by definition
     velocity_by: str  # what surely turned velocity over ground: "compass" or "receiver"; "": not known
@@ -82,18 +84,17 @@ def said(
 ) -> Instruments:
     """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
     for each voyage, in the order of the fit; `prompt`: the ages that are none by definition, first that from
-    which those of heading and rate count. A fault of the likeliest set is seen when its log Bayes factor, or
-    that of it and what would stand in its place together, is above FAULT_BAYES_FACTOR."""
+    which those of heading and rate count. A fault of the likeliest set is seen when its log Bayes factor,
+    or that of it and what would stand in its place together, is above FAULT_BAYES_FACTOR; in the latter case
+    alone these voyages do not tell it from that."""
     book = WeighedSets(found, prompt)
     best = book.likeliest()
     factor = {f: book.bayes_factor(f, best) for f in book.tellable}
     everything = book.weigh(book.tellable)
-    instead = {f: book.instead(f, best) for f in best.faults if factor[f] <= FAULT_BAYES_FACTOR}
-    faults = tuple(
-        f
-        for f in best.faults
-        if factor[f] > FAULT_BAYES_FACTOR or book.bayes_factor(f, best, instead[f]) > FAULT_BAYES_FACTOR
-    )
+    untold = [f for f in best.faults if factor[f] <= FAULT_BAYES_FACTOR]
+    instead = {f: book.instead(f, best) if f in untold else () for f in best.faults}
+    of_any = {f: book.bayes_factor(f, best, instead[f]) for f in best.faults}
+    faults = tuple(f for f in best.faults if of_any[f] > FAULT_BAYES_FACTOR)
     estimates = tuple(
         e for i in range(found.at.size) if (e := _one(i, readings, book, best, faults, factor, everything))
     )
@@ -107,7 +108,8 @@ def said(
         tuple({k: p.sd[k] for k in (*p.by, "drift") if k in p.sd} for p in problems),
         _relative(book, aged, problems, prompt[0]),
         factor,
-        {f: instead.get(f, ()) for f in faults},
+        {f: instead[f] for f in faults},
+        {f: of_any[f] for f in faults},
         tuple(_stream(p, t) for p, t in zip(problems, found.theta, strict=True)),
         prompt[0],
         velocity_by,

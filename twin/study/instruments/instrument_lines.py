@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from twin.num import READABLE, num
+from twin.num import READABLE, as_given, num
 from twin.physics.effect import Effect, SensorFault
 from twin.study.estimation.rarity import P95, deviations
-from twin.study.instruments.findings import InstrumentEstimate, Instruments, instrument_of
+from twin.study.instruments.findings import FAULT_BAYES_FACTOR, InstrumentEstimate, Instruments, instrument_of
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, INDEX, UNKNOWNS, effect_of
 
@@ -49,6 +49,7 @@ def as_json(found: Instruments) -> dict[str, Any]:
                 "effect": effect_of(f),
                 "words": FAULTS[f].words,
                 "log_bayes_factor": found.log_bayes_factors[f],
+                "log_bayes_factor_of_any": found.of_any[f],
                 "or_instead": list(found.instead[f]),
                 "residuals": {
                     k: {"without": a, "with": b, "unit": READ[k]} for k, (a, b) in found.falls[f].items()
@@ -130,6 +131,33 @@ def turned_by(r: Readings, own: bool) -> str:
     )
 
 
+def either(fault: str, instead: Sequence[str]) -> str:
+    """A fault in words, and what may be there in its place."""
+    return FAULTS[fault].words + _or(instead)
+
+
+def ambiguities(found: Instruments) -> list[str]:
+    """Of each fault seen that the voyages do not tell from another, and that therefore is written nowhere:
+    from which, and what would tell, a line each."""
+    out = []
+    for fault, instead in found.instead.items():
+        if instead:
+            turns = dict.fromkeys(FAULTS[x].turn for x in (fault, *instead))
+            out.append(
+                f"these voyages do not tell {FAULTS[fault].words} from {_all(instead)}, and neither is "
+                f"written; sail {', and '.join(turns)}, and ask all voyages together"
+            )
+    return out
+
+
+def _or(instead: Sequence[str]) -> str:
+    return f" or {_all(instead)}" if instead else ""
+
+
+def _all(faults: Sequence[str]) -> str:
+    return " and ".join(FAULTS[f].words for f in faults)
+
+
 def _fault(found: Instruments, fault: str) -> list[str]:
     f, effect, numbers = (
         FAULTS[fault],
@@ -139,13 +167,14 @@ def _fault(found: Instruments, fault: str) -> list[str]:
     head = (
         f"{f.words}"
         + (f" ({effect})" if effect else "")
-        + (f": log Bayes factor {found.log_bayes_factors[fault]:.0f}")
+        + _or(found.instead[fault])
+        + f": log Bayes factor {num(found.of_any[fault], 3)}"
     )
     out = [head] + [f"  {e.unknown.name:<18}{_sized(e)}   {e.unknown.meaning}" for e in numbers]
     if found.instead[fault]:
         out.append(
-            f"  or, in its place: {', '.join(FAULTS[x].words for x in found.instead[fault])} (these "
-            "voyages do not tell which)"
+            "  these voyages do not tell which: log Bayes factor of the first against the other "
+            f"{num(found.log_bayes_factors[fault], 3)} (told above {as_given(FAULT_BAYES_FACTOR)})"
         )
     if untold := [e.unknown.meaning for e in numbers if not e.known]:
         out += textwrap.wrap(
