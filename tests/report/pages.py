@@ -186,7 +186,8 @@ def made(folder, track, model, ship):
         "by_regime": [{"regime": "straight"} | ERRORS[1]],
     }
     calibration = Calibration(ship, data=held | {"derivatives": [number], "refused": "", "doubts": ["Look."]})
-    seen = {"words": "the compass is off", "effect": None, "fault": "compass_offset", "log_bayes_factor": 9.0}
+    seen = {"words": "compass bias", "effect": "HeadingBias", "fault": "heading_bias", "or_instead": []}
+    seen |= {"log_bayes_factor": 9.0, "log_bayes_factor_of_any": 9.0}
     told = {
         "meaning": "offset of the compass",
         "value": 1.0,
