@@ -143,7 +143,7 @@ def test_a_sample_that_does_not_count_widens_the_bound_by_what_it_moved(of_boat)
 
 
 def test_what_drove_the_model_before_its_first_estimate_is_not_kept(make_service):
-    """Test: a boat at her berth, every instrument off. Expected: no memory of the ticks that pass."""
+    """Test: a boat at its berth, every instrument off. Expected: no memory of the ticks that pass."""
     bridge = make_service("usv")
     bridge.run(60.0, lambda readings, bridge: [])
     assert isinstance(bridge.loop.observer, RollBack) and len(bridge.loop.observer._drives) == 1
