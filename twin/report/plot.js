@@ -68,11 +68,19 @@ function extent(list, from, to) {
   return [low, high];
 }
 
-/** A line through the samples in view; thick data is drawn as the span of each pixel column. */
+const waits = new WeakMap(); // times of samples -> the usual wait between them, once
+
+/** Seconds without a sample from which a line is torn: three of the usual waits, and no less than this. */
+function gapOf(t, least = 15) {
+  if (!waits.has(t)) waits.set(t, t.length > 1 ? t.slice(1).map((x, i) => x - t[i]).sort()[(t.length - 1) >> 1] : 0);
+  return Math.max(least, 3 * waits.get(t));
+}
+
+/** A line through the samples in view, and a dot where one is alone; thick data is drawn as the span of each pixel column. */
 function line(pen, { t, y }, X, Y, from, to, gap, breaks) {
   const a = Math.max(lower(t, from) - 1, 0), b = Math.min(lower(t, to) + 1, t.length);
   pen.beginPath();
-  let up = true, last = -Infinity, column = null, low = 0, high = 0, first = 0, end = 0, cut = breaks ? lower(breaks, t[a] || 0) : 0;
+  let up = true, count = 0, last = -Infinity, value = 0, column = null, low = 0, high = 0, first = 0, end = 0, cut = breaks ? lower(breaks, t[a] || 0) : 0;
   const dense = b - a > 3 * pen.canvas.clientWidth;
   const flush = () => {
     if (column === null) return;
@@ -80,19 +88,24 @@ function line(pen, { t, y }, X, Y, from, to, gap, breaks) {
     pen.lineTo(column, Y(low)); pen.lineTo(column, Y(high)); pen.lineTo(column, Y(end));
     up = false; column = null;
   };
+  const tear = () => {
+    flush();
+    if (count === 1) { const px = X(last), py = Y(value); pen.moveTo(px - 1.5, py); pen.lineTo(px + 1.5, py); }
+    up = true; count = 0;
+  };
   for (let i = a; i < b; i++) {
     const v = y[i], x = t[i];
-    if (v !== v) { flush(); up = true; continue; }
+    if (v !== v) { tear(); continue; }
     let torn = x - last > gap;
     if (breaks) while (cut < breaks.length && breaks[cut] < x - 1e-3) { torn = true; cut++; }
-    if (torn) { flush(); up = true; }
-    last = x;
+    if (torn) tear();
+    last = x; value = v; count++;
     const px = X(x);
     if (!dense) { up ? pen.moveTo(px, Y(v)) : pen.lineTo(px, Y(v)); up = false; continue; }
     const c = Math.round(px);
     if (c !== column) { flush(); column = c; low = high = first = end = v; } else { if (v < low) low = v; if (v > high) high = v; end = v; }
   }
-  flush();
+  tear();
   pen.stroke();
 }
 
@@ -157,7 +170,7 @@ function paint(start, series, options) {
   if (tube) ribbon(pen, tube, X, Y, from, to);
   for (const s of series) {
     pen.strokeStyle = colour(s.colour); pen.lineWidth = s.width || 1.2; pen.globalAlpha = s.alpha || 1; pen.lineJoin = "round";
-    line(pen, s.data, X, Y, from, to, s.gap || 15, s.breaks);
+    line(pen, s.data, X, Y, from, to, gapOf(s.data.t, s.gap), s.breaks);
   }
   pen.restore();
 }
@@ -229,8 +242,9 @@ function point(t) {
   }
 }
 
-function valueAt({ t, y }, at) {
+/** The nearest sample, unless it is farther away than a line reaches. */
+function valueAt({ t, y }, at, least) {
   const i = Math.min(lower(t, at), t.length - 1);
   const j = i > 0 && at - t[i - 1] < t[i] - at ? i - 1 : i;
-  return Math.abs(t[j] - at) < 15 ? y[j] : NaN;
+  return Math.abs(t[j] - at) < gapOf(t, least) ? y[j] : NaN;
 }

@@ -40,16 +40,17 @@ def packed(values: np.ndarray) -> str:
 
 def stitched(track: Track, model: Model, longest_s: float) -> tuple[np.ndarray, np.ndarray]:
     """(N, 8) open-loop readings in SI along the whole track, begun anew every `longest_s`, and the steps
-    (W,) at which they begin."""
+    (W,) at which they begin; NaN where the controls are not known all the way from there, or the position was
+    not read there. Where they end it need not have been."""
     w = predict(
         track, fed(model, track)[0], (min(SHORTEST_S, longest_s), longest_s), stride_s=longest_s, leads=EVERY
     )
-    ahead = w.start[1] - w.start[0] if w.start.size > 1 else len(track)
+    begins = np.isfinite(w.seen[w.start, :3]).all(1)
     line = np.full((len(track), len(READINGS)), np.nan)
-    for j, start in enumerate(w.start):
-        rows = slice(0, min(ahead, w.lead.size, len(track) - 1 - start))
-        values = np.where(w.valid[rows, j, None], w.promised[MODEL, rows, j], np.nan)
-        line[start + w.lead[rows]] = values
+    for j, (start, end) in enumerate(zip(w.start, [*w.start[1:], len(track) - 1], strict=True)):
+        steps = slice(start + 1, min(end, start + w.lead[-1]) + 1)
+        known = np.logical_and.accumulate(track.whole[start : steps.stop])[1:] & begins[j]
+        line[steps] = np.where(known[:, None], w.promised[MODEL, : known.size, j], np.nan)
     return line, w.start
 
 
@@ -158,7 +159,7 @@ def _inputs(track: Track, voyage: Voyage | None, times: Times, grid: int) -> lis
 
 def _heat(w: Windows, structural: bool) -> dict[str, Any]:
     """Channel x time: mean error of each window up to HEAT_S ahead, in units of its noise."""
-    near = w.lead * w.track.h <= HEAT_S + 1e-6
+    near = w.lead * w.track.h <= HEAT_S + 0.5 * w.track.h  # the horizon itself, on its step
     near = near if near.any() else np.ones_like(near)
     noise = np.abs(w.off(STRUCTURE if structural else SENSORS)[near])
     error = np.abs(w.off()[near])

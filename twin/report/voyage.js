@@ -7,7 +7,8 @@ function decode(v) {
   const open = (s) => ({ t: v.times[s.t], y: unpack(s.y) });
   for (const c of [...v.channels, ...v.inputs]) {
     c.measured = open(c.measured);
-    for (const group of [c.lines || {}, c.residuals || {}]) for (const key of Object.keys(group)) group[key] = open(group[key]);
+    for (const key of Object.keys(c.lines || {})) c.lines[key] = open(c.lines[key]);
+    for (const key of Object.keys(c.residuals || {})) c.residuals[key] = there(open(c.residuals[key]));
   }
   for (const part of [v.track, ...Object.values(v.track.lines)]) for (const key of ["t", "x", "y"]) if (part[key]) part[key] = unpack(part[key]);
   for (const c of v.foretold || []) for (const s of [c.error, c.moved, c.tube]) for (const key of Object.keys(s)) s[key] = key === "t" ? v.times[s.t] : unpack(s[key]);
@@ -16,6 +17,12 @@ function decode(v) {
     for (const r of v.heat.rows) r.y = unpack(r.y);
   }
   v.decoded = true;
+}
+
+/** Only the samples that are there. */
+function there({ t, y }) {
+  const seen = (_, i) => y[i] === y[i];
+  return y.every((v) => v === v) ? { t, y } : { t: t.filter(seen), y: y.filter(seen) };
 }
 
 function setTheme(name) {
@@ -63,7 +70,7 @@ function channelPanel(v, c) {
   const lines = LINES.map((l) => ({ data: c.lines[l.key], colour: l.colour, width: 1.6, breaks: v.restarts, gap: 1e9 }));
   const main = plot(96, [{ data: c.measured, colour: "measured", width: 1.6, alpha: 0.9 }, ...lines], { label: `${word}, measured and modelled, over time` });
   const panel = view.panels[view.panels.length - 1];
-  const rest = plot(50, LINES.map((l) => ({ data: c.residuals[l.key], colour: LINES.length > 1 ? l.colour : "residual", width: 1.3, breaks: v.restarts, gap: 1e9 })), { band: c.noise || 1e-6, label: `${word}, measured − model, over time` });
+  const rest = plot(50, LINES.map((l) => ({ data: c.residuals[l.key], colour: LINES.length > 1 ? l.colour : "residual", width: 1.3, breaks: v.restarts })), { band: c.noise || 1e-6, label: `${word}, measured − model, over time` });
   panel.say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${asGiven(valueAt(c.measured, t), 5)}\n${LINES.map((l) => `${l.word} ${asGiven(valueAt(c.lines[l.key], t), 5)}\nmeasured − it ${asGiven(valueAt(c.residuals[l.key], t), 5)}`).join("\n")}`; };
   return el(".panel", null, el(".name", null, el("b", null, word), el("small", null, `${unit}; below: measured − ${LINES.length > 1 ? "each" : "model"}, ${c.noise_word || "noise"} ±${num(c.noise, 2)}`), value), el("div", null, main, rest));
 }
@@ -82,7 +89,7 @@ function tubePanel(c) {
 function inputPanel(c) {
   const [word, unit] = named(c.name), value = el(".value");
   const box = plot(58, [{ data: c.measured, colour: "measured", width: 1.3, gap: 90 }], { label: `${word}, recorded, over time` });
-  view.panels[view.panels.length - 1].say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${asGiven(valueAt(c.measured, t), 5)}`; };
+  view.panels[view.panels.length - 1].say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${asGiven(valueAt(c.measured, t, 90), 5)}`; };
   return el(".panel", null, el(".name", null, el("b", null, word), el("small", null, unit), value), box);
 }
 

@@ -4,6 +4,7 @@ import { address, change, found, start, state, unpack } from "/app/api.js";
 import { button, card, choose, clock, el, field, named, table } from "/app/dom.js";
 import { asGiven, num } from "/app/number.js";
 import { chart, heatStrip, ways } from "/app/draw.js";
+import { there } from "/app/lines.js";
 import { timePlot, timeView, zoomer } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
 import { answerOf, earlier, foot, go, kept, lacks, pickVoyages, theShip } from "/app/shared.js";
@@ -107,13 +108,13 @@ export function seriesCard(done, v, view, extra) {
         const name = extra?.name(key, a) ?? (done.length > 1 ? label(a.job) : "predicted"), look = extra?.look(key, i) ?? LOOKS[i % 4];
         lines.push({ name, t: T(voyage, line.t), y: unpack(line.y), look, gaps: voyage.restarts });
         const residual = o.residuals[key];
-        off.push({ name: `measured − ${name}`, t: T(voyage, residual.t), y: unpack(residual.y), look, gaps: voyage.restarts });
+        off.push({ name: `measured − ${name}`, ...there(T(voyage, residual.t), unpack(residual.y)), look, gaps: voyage.restarts });
       }
     });
     for (const more of extra?.lines?.(c.name) || []) {
       const first = v.channels.find((x) => x.name === c.name), key = Object.keys(first.lines)[0], without = unpack(first.lines[key].y), residual = unpack(first.residuals[key].y);
       lines.push({ ...more, t: T(v, v.grid), gaps: v.restarts });
-      off.push({ ...more, name: `measured − ${more.name}`, y: residual.map((x, i) => x + without[i] - more.y[i]), t: T(v, v.grid), gaps: v.restarts });
+      off.push({ ...more, name: `measured − ${more.name}`, ...there(T(v, v.grid), residual.map((x, i) => x + without[i] - more.y[i])), gaps: v.restarts });
     }
     return [timePlot(title, lines, { unit, view, compared: true }), timePlot(`${title}, difference`, off, { unit, view, height: 100, band: c.noise || undefined })];
   });

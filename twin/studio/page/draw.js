@@ -71,6 +71,7 @@ const STEPS = [1.5, 4, 9]; // times the noise, where a colour begins
 
 /** Channel over time: how many times its noise each channel is off. */
 export function heatStrip(voyage, heat, view) {
+  if (!heat.rows.length) return el("p.note", null, `On ${voyage} no prediction ends where the position was read: there is nothing to colour.`);
   const title = `Error over noise, ${voyage}`, box = el(".draw");
   let drawing = null;
   const paint = () => {

@@ -5,6 +5,12 @@ import { num } from "/app/number.js";
 /* global uPlot */
 const known = new WeakMap(); // samples -> what was worked out of them, once
 
+/** Only the samples that are there: { t, y }. What an instrument reads seldom is a line through its readings. */
+export function there(t, y) {
+  const seen = (_, i) => y[i] === y[i];
+  return y.every((v) => v === v) ? { t, y } : { t: t.filter(seen), y: y.filter(seen) };
+}
+
 /** The line without samples that are not there, as typed arrays: { t, y, holes: before which sample it is broken, words }. */
 function whole(t, y) {
   if (known.has(y)) return known.get(y);

@@ -1,0 +1,84 @@
+"""What is drawn of a channel, in a real browser: what was sampled seldom is a line all the same, what was lost is a
+gap, and the marks of an axis are told from each other."""
+
+import numpy as np
+import pytest
+
+from tests.report.test_series import placed_every
+from twin import report
+from twin.physics.model import Model
+from twin.study.prediction.open_loop_comparison import compare
+
+# of the drawings in a panel of this name: which part of the pixel columns right of the axis shows its line
+DRAWN = """((name) => {{
+  const root = document.documentElement.style, panel = [...document.querySelectorAll("#plots .panel")]
+    .find((p) => p.querySelector("b")?.textContent === name);
+  root.setProperty("--measured", "#ff0000"); root.setProperty("--residual", "#ff0000");
+  root.setProperty("--model", "#0000"); drawAll();
+  return [...panel.querySelectorAll("canvas")].map((c) => {{
+    const {{ data, width, height }} = c.getContext("2d").getImageData(LEFT, 0, c.width - LEFT, c.height);
+    const red = (x) => Array.from({{ length: height }}, (_, y) => 4 * (y * width + x))
+      .some((i) => data[i] > data[i + 1] + 60 && data[i] > data[i + 2] + 60 && data[i + 3] > 60);
+    return Array.from({{ length: width }}, (_, x) => red(x)).filter(Boolean).length / width;
+  }});
+}})({name!r})"""
+
+
+@pytest.fixture(scope="module")
+def voyage():
+    """Half an hour, positions each 20 s, waves each 10 min, the draught said once, and the speed lost for 5 min."""
+    from tests.study.conftest import voyage
+
+    made = placed_every(voyage(seconds=1500.0), 16)
+    t, columns = made.time_s, dict(made.columns)
+    seldom = np.arange(t.size) % 480 == 0
+    columns["wave_height_significant_m"] = np.where(seldom, 1.0 + 1e-3 * t, np.nan)
+    columns["draught_mean_m"] = np.where(np.arange(t.size) == 700, 20.8, np.nan)
+    columns["surge_velocity_mps"] = np.where((t > 600.0) & (t < 900.0), np.nan, columns["surge_velocity_mps"])
+    return made.with_rows(t, columns)
+
+
+@pytest.fixture(scope="module")
+def page(tab, voyage, tmp_path_factory):
+    from tests.study.conftest import ship
+    from twin.study.reference.sailed import Sailed
+    from twin.study.track.track import track
+
+    path, model = tmp_path_factory.mktemp("page") / "page.html", Model.of(ship())
+    sailed = Sailed(voyage, track(voyage, ship()), voyage.name)
+    result = compare([sailed], model).result | {"files": {"ship": "alma.toml", "voyages": ["m.mcap"]}}
+    report.write(path, "compare", result, [sailed.track], model, voyages=[voyage])
+    tab.size(1200, 900)
+    tab.leave()
+    tab.open(f"{path.as_uri()}#theme=light")
+    tab.wait("document.documentElement?.dataset.readyMs")
+    return tab
+
+
+def test_positions_each_20_s_are_a_line_and_so_is_what_is_left_over(page):
+    measured, left_over = page.value(DRAWN.format(name="north"))
+    assert measured > 0.95 and left_over > 0.8  # which begins anew every 120 s
+
+
+def test_waves_each_10_min_are_a_line_and_a_draught_said_once_is_a_dot(page):
+    """Expected: a line from the first wave to the last, at 1200 s of 1500; a dot that is seen."""
+    (waves,) = page.value(DRAWN.format(name="wave height significant"))
+    (draught,) = page.value(DRAWN.format(name="draught mean"))
+    assert waves == pytest.approx(0.8, abs=0.02)
+    assert 1e-3 < draught < 0.01
+
+
+def test_what_was_lost_for_minutes_is_a_gap(page):
+    (lost, _), (whole, _) = (page.value(DRAWN.format(name=n)) for n in ("surge velocity", "heading"))
+    assert whole > 0.95 and lost == pytest.approx(0.8, abs=0.03)
+
+
+def test_the_value_beside_the_cursor_is_there_wherever_the_line_is(page):
+    """Test: the cursor 5 min after a wave was said. Expected: that wave, and of the surge lost then none."""
+    said = page.value(
+        "(() => { point(900 - 100); return [...document.querySelectorAll('#plots .panel')].map((p) =>"
+        " [p.querySelector('b')?.textContent, p.querySelector('.value')?.textContent]); })()"
+    )
+    values = {name: text.split("\n")[0].split()[1] for name, text in said if name}
+    assert values["wave height significant"] == "1.602" and values["surge velocity"] == "–"
+    assert values["heading"] != "–"

@@ -1,0 +1,59 @@
+"""What the workbench draws, asked of its own modules in a real browser."""
+
+import pytest
+
+from tests.studio.by_mouse import opened
+
+
+@pytest.fixture(scope="module")
+def page(tab, served):
+    return opened(tab, served)
+
+
+def drawn(page, script):
+    """What a script gives that has the drawing modules; `page.said` is what went wrong meanwhile."""
+    names = ("draw", "plot", "compare", "number")
+    parts = ", ".join(f"{n}: await import('/app/{n}.js')" for n in names)
+    return page.value(f"(async () => {{ const m = {{ {parts} }}; {script} }})()")
+
+
+def test_a_voyage_without_a_predicted_position_has_words_in_place_of_a_heat_strip(page):
+    """Test: no row, and the zoom moved. Expected: a sentence, and nothing thrown when the zoom asks for a drawing."""
+    text = drawn(
+        page,
+        "const view = m.plot.timeView(), heat = { t: new Float32Array([0, 10]), rows: [] };"
+        "const made = m.draw.heatStrip('slow', heat, view); document.body.append(made);"
+        "for (const f of view.watchers) f();"
+        "await new Promise((d) => setTimeout(d, 100)); made.remove(); return made.textContent;",
+    )
+    assert text.startswith("On slow no prediction") and not page.said
+
+
+def test_the_difference_to_positions_that_were_read_seldom_is_a_line(page):
+    """Test: a position each 20 s on a grid of 1 s, the prediction begun anew once. Expected: red, the line's colour, in
+    all pixel columns but those between the last position before that and the first after it; nothing thrown."""
+    shares = drawn(
+        page,
+        "document.documentElement.style.setProperty('--model', '#ff0000');"
+        "const packed = (x) => btoa(String.fromCharCode(...new Uint8Array(new Float32Array(x).buffer)));"
+        "const t = Array.from({ length: 401 }, (_, i) => i), seldom = t.filter((x) => x % 20 === 0);"
+        "const left = packed(t.map((x) => (x % 20 ? NaN : Math.sin(x / 50))));"
+        "const channel = { name: 'north_m', noise: 0.1, measured: { t: 1, y: packed(seldom) },"
+        " lines: { model: { t: 0, y: packed(t) } }, residuals: { model: { t: 0, y: left } } };"
+        "const v = { name: 'slow', grid: 0, restarts: [0, 210], times: [packed(t), packed(seldom)], inputs: [],"
+        " channels: [channel], track: { x: packed(t), y: packed(t), lines: {} } };"
+        "const other = { name: 'with it', y: new Float32Array(t).map((x) => x + 1), look: 'c-second' };"
+        "const with_ = { lines: () => [other] };"
+        "const done = [{ job: { asked: { ship: 'a.toml' } }, view: { voyages: [v], longest_s: 120 } }], out = [];"
+        "for (const extra of [undefined, { ...with_, name: () => 'model', look: () => 'c-model' }]) {"
+        "  const card = m.compare.seriesCard(done, v, m.plot.timeView(), extra); document.body.prepend(card);"
+        "  await new Promise((d) => setTimeout(d, 400));"
+        "  const c = card.querySelectorAll('canvas')[1], { data, width, height } ="
+        "    c.getContext('2d').getImageData(0, 0, c.width, c.height);"
+        "  const red = (x) => Array.from({ length: height }, (_, y) => 4 * (y * width + x))"
+        "    .some((i) => data[i] > 200 && data[i + 1] < 90 && data[i + 2] < 90 && data[i + 3] > 100);"
+        "  const seen = Array.from({ length: width }, (_, x) => x).filter(red);"
+        "  out.push(seen.length / (seen.at(-1) - seen[0] + 1)); card.remove();"
+        "} return out;",
+    )
+    assert shares == pytest.approx([0.95, 0.95], abs=0.02) and not page.said
