@@ -82,3 +82,18 @@ def test_the_value_beside_the_cursor_is_there_wherever_the_line_is(page):
     values = {name: text.split("\n")[0].split()[1] for name, text in said if name}
     assert values["wave height significant"] == "1.602" and values["surge velocity"] == "–"
     assert values["heading"] != "–"
+
+
+NAMES = {
+    "port.pwm_us": ["port pwm", "us"],
+    "port.rate_rev_s": ["port rate", "1/s"],
+    "port.thrust_n": ["port thrust", "N"],
+    "port.angle_rad": ["port angle", "rad"],
+    "port.pitch_ratio": ["port pitch ratio", ""],
+    "wave_period_peak_s": ["wave period peak", "s"],
+    "yaw_rate_degps": ["yaw rate", "deg/s"],
+}
+
+
+def test_every_channel_is_named_with_its_unit(page):
+    assert page.value(f"{list(NAMES)}.map(named)") == list(NAMES.values())

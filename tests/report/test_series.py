@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+import twin
+from tests.live.actuators import SIDES, craft
+from tests.report.boat import straight_with_a_turn
 from twin.physics.model import Model
 from twin.report.page import content
 from twin.report.series import stitched
@@ -47,3 +50,17 @@ def test_the_heat_strip_of_seldom_positions_has_the_errors_60_s_ahead(make, kvlc
     voyage = placed_every(make(seconds=700.0), 16)
     (drawn,) = content("compare", {"verdict": ""}, [track(voyage, kvlcc2)], Model.of(kvlcc2))["voyages"]
     assert len(drawn["heat"]["rows"]) == len(drawn["channels"]) == 8
+
+
+def test_the_controls_of_actuators_are_drawn_behind_those_of_every_ship(tmp_path):
+    """Test: a boat of two thrusters with a wave height. Expected: the waves, and each thruster's pulse width."""
+    boat, voyage = craft(*SIDES), twin.read_voyage(straight_with_a_turn(tmp_path / "v.csv", 1))
+    columns = {n: x for n, x in voyage.columns.items() if n not in ("rudder_angle_deg", "propeller_rate_rpm")}
+    pulse = 1650.0 + 2.0 * voyage["rudder_angle_deg"]
+    columns = {"port.pwm_us": pulse, "starboard.pwm_us": 3300.0 - pulse} | columns
+    made = voyage.with_rows(voyage.time_s, columns)
+    (drawn,) = content("compare", {"verdict": ""}, [track(made, boat)], Model.of(boat), voyages=[made])[
+        "voyages"
+    ]
+    names = [c["name"] for c in drawn["inputs"]]
+    assert names == ["wave_height_significant_m", "port.pwm_us", "starboard.pwm_us"]

@@ -184,6 +184,18 @@ def test_the_page_of_a_replay_shows_the_estimate_beside_what_was_measured(replay
     assert abs(np.diff(values(channels["heading_true_north_deg"]["measured"]["y"]))).max() < 180.0
 
 
+def test_the_page_of_a_replay_without_positions_opens(tmp_path):
+    """Test: a log of heading, speeds and controls alone. Expected: its plots, no track, and no complaint."""
+    voyage = twin.read_voyage(straight_with_a_turn(tmp_path / "v.csv", 3))
+    columns = {n: x for n, x in voyage.columns.items() if n not in ("north_m", "east_m")}
+    log, page = tmp_path / "log.mcap", tmp_path / "page.html"
+    write_voyage(voyage.with_rows(voyage.time_s, columns), log)
+    assert cli.main(["replay", str(log), "--ship", "usv", "--report", str(page)]) == 0
+    assert data_of(page)["voyages"][0]["track"] is None
+    dom, complaints = opened(page)
+    assert complaints == [] and "heading" in dom and "Provenance" in dom and "<h2>Track" not in dom
+
+
 def test_predictions_are_judged_where_the_helm_was_held_and_apart_from_that(replayed):
     """Test: a boat that turns once. Expected: errors of both kinds, and none is of both."""
     _, page, _ = replayed

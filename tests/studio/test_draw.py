@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.report.test_plot import NAMES
 from tests.studio.by_mouse import opened
 
 
@@ -12,7 +13,7 @@ def page(tab, served):
 
 def drawn(page, script):
     """What a script gives that has the drawing modules; `page.said` is what went wrong meanwhile."""
-    names = ("draw", "plot", "compare", "number")
+    names = ("dom", "draw", "plot", "compare", "number")
     parts = ", ".join(f"{n}: await import('/app/{n}.js')" for n in names)
     return page.value(f"(async () => {{ const m = {{ {parts} }}; {script} }})()")
 
@@ -57,3 +58,7 @@ def test_the_difference_to_positions_that_were_read_seldom_is_a_line(page):
         "} return out;",
     )
     assert shares == pytest.approx([0.95, 0.95], abs=0.02) and not page.said
+
+
+def test_every_channel_is_named_with_its_unit_as_on_the_report(page):
+    assert drawn(page, f"return {list(NAMES)}.map(m.dom.named);") == list(NAMES.values())

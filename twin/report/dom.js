@@ -43,12 +43,12 @@ function clock(s) {
   return sign + (h ? `${h}:${two(m)}:${two(t % 60)}` : `${m}:${two(t % 60)}`);
 }
 
-/** "sway_velocity_through_water_mps" -> ["sway velocity through water", "m/s"]. */
+const UNITS = [["_mps", "m/s"], ["_degps", "deg/s"], ["_rev_s", "1/s"], ["_deg", "deg"], ["_rad", "rad"], ["_rpm", "rpm"], ["_us", "us"], ["_n", "N"], ["_m", "m"], ["_s", "s"]];
+
+/** "sway_velocity_through_water_mps" -> ["sway velocity through water", "m/s"], "port.pwm_us" -> ["port pwm", "us"]. */
 function named(column) {
-  const units = { mps: "m/s", degps: "deg/s", deg: "deg", rpm: "rpm", m: "m", s: "s" };
-  const words = column.split("_"), unit = units[words[words.length - 1]];
-  if (unit) words.pop();
-  return [words.join(" ").replace(" true north", ""), unit || ""];
+  const [end, unit] = UNITS.find(([e]) => column.endsWith(e)) || ["", ""];
+  return [column.slice(0, column.length - end.length).replaceAll(/[_.]/g, " ").replace(" true north", ""), unit];
 }
 
 function unpack(text) {

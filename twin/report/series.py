@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.live.signals.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME, of_actuators
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
 from twin.study.prediction.openloop import predict
@@ -150,11 +150,12 @@ def _raw(voyage: Voyage, name: str, track: Track) -> tuple[np.ndarray, np.ndarra
 def _inputs(track: Track, voyage: Voyage | None, times: Times, grid: int) -> list[dict[str, Any]]:
     """What was recorded beside the motion: controls and weather."""
     if voyage is not None:
-        names = [n for n in BY_NAME if n not in MEASURED.values() and n in voyage.columns and voyage.has(n)]
+        known = [*BY_NAME, *of_actuators(voyage.columns)]
+        names = [n for n in known if n not in MEASURED.values() and voyage.has(n)]
         return [{"name": n, "measured": times.series(*_raw(voyage, n, track))} for n in names]
     values = {"delta": track.delta, "n": track.n} | dict(track.weather)
-    known = [(INPUTS[n], v) for n, v in values.items() if n in INPUTS]
-    return [{"name": n, "measured": {"t": grid, "y": packed(v / BY_NAME[n].to_si)}} for n, v in known]
+    held = [(INPUTS[n], v) for n, v in values.items() if n in INPUTS]
+    return [{"name": n, "measured": {"t": grid, "y": packed(v / BY_NAME[n].to_si)}} for n, v in held]
 
 
 def _heat(w: Windows, structural: bool) -> dict[str, Any]:

@@ -10,7 +10,7 @@ function decode(v) {
     for (const key of Object.keys(c.lines || {})) c.lines[key] = open(c.lines[key]);
     for (const key of Object.keys(c.residuals || {})) c.residuals[key] = there(open(c.residuals[key]));
   }
-  for (const part of [v.track, ...Object.values(v.track.lines)]) for (const key of ["t", "x", "y"]) if (part[key]) part[key] = unpack(part[key]);
+  for (const part of v.track ? [v.track, ...Object.values(v.track.lines)] : []) for (const key of ["t", "x", "y"]) if (part[key]) part[key] = unpack(part[key]);
   for (const c of v.foretold || []) for (const s of [c.error, c.moved, c.tube]) for (const key of Object.keys(s)) s[key] = key === "t" ? v.times[s.t] : unpack(s[key]);
   if (v.heat) {
     v.heat.t = unpack(v.heat.t);

@@ -75,10 +75,10 @@ export function clock(s) {
   return h ? `${h}:${String(m % 60).padStart(2, "0")}:${String(t % 60).padStart(2, "0")}` : `${m}:${String(t % 60).padStart(2, "0")}`;
 }
 
-const UNITS = [["_mps", "m/s"], ["_degps", "deg/s"], ["_deg", "deg"], ["_rpm", "1/min"], ["_m", "m"], ["_s", "s"]];
+const UNITS = [["_mps", "m/s"], ["_degps", "deg/s"], ["_rev_s", "1/s"], ["_deg", "deg"], ["_rad", "rad"], ["_rpm", "1/min"], ["_us", "us"], ["_n", "N"], ["_m", "m"], ["_s", "s"]];
 
-/** "yaw_rate_degps" -> ["yaw rate", "deg/s"] */
+/** "yaw_rate_degps" -> ["yaw rate", "deg/s"], "port.pwm_us" -> ["port pwm", "us"] */
 export function named(channel) {
   const [end, unit] = UNITS.find(([e]) => channel.endsWith(e)) || ["", ""];
-  return [channel.slice(0, channel.length - end.length).replaceAll("_", " "), unit];
+  return [channel.slice(0, channel.length - end.length).replaceAll(/[_.]/g, " "), unit];
 }
