@@ -72,6 +72,14 @@ class Calibration(Result):
             f"{metres(last['before_m'])} -> {metres(last['position_m'])} at {as_given(last['horizon_s'])} s"
         )
 
+    def _sentence(self) -> str:
+        """What became of the error: where the heading's falls, the place's may grow a little."""
+        last = self.data["held_out"][-1]
+        return (
+            "The open-loop error in place, on what was not used for the fit, goes from "
+            f"{metres(last['before_m'])} to {metres(last['position_m'])} after {as_given(last['horizon_s'])} s."
+        )
+
     def page(self) -> str:
         """The error before and after, by horizon and by what the ship did, and every derivative."""
         from twin.report.result_page import Bars, PageTable, result_page
@@ -89,7 +97,7 @@ class Calibration(Result):
         regimes = {"regime": "while", "horizon_s": "horizon [s]", "position_m": "error [m]"}
         return result_page(
             f"{self.ship.name}: calibration",
-            self.refused or f"What was not used for the fit is predicted better: {self._fall()}.",
+            self.refused or self._sentence(),
             self.warnings,
             (
                 Bars(f"Open-loop position error ({self.data['held_out_is']})", "m", "at", both, rows),
