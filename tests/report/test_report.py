@@ -141,6 +141,7 @@ def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resemb
         "says": "It hangs loose.",
     }
     stream_too = {"effect": "Current", "probability": 0.23, "parameters": []}
+    stream_too |= {"error_without": 30.0, "error_with": None}  # which was not predicted
     result = {
         "schema_version": 1,
         "verdict": "unknown",
@@ -161,6 +162,7 @@ def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resemb
         "RudderPlay",
     ):
         assert words in dom
+    assert "30.0 m without it" not in dom
     # which does not explain it; and is no effect of the catalogue
     assert "twin add Current" not in dom and "twin add RudderPlay" not in dom
     result |= {"verdict": "undecided", "one_of": ["Current", "RudderPlay"]}

@@ -49,6 +49,8 @@ function sail(m) {
 
 const bar = (p, words) => el("span.chance", null, svg("svg", { viewBox: "0 0 100 7", preserveAspectRatio: "none", role: "img", "aria-label": words }, svg("rect", { class: "c-model fill", width: 100 * p, height: 7 })));
 
+const known = (x) => x !== undefined && x !== null;
+
 /** One cause: how sure, how large, which way, what it changes. */
 function cause(c, a, chosen) {
   const told = a.view.causes.find((x) => x.effect === c.effect) || { numbers: [] }, on = chosen === c.effect, p = c.probability;
@@ -58,7 +60,7 @@ function cause(c, a, chosen) {
   const force = [["X", f.X_N, 1e-3, "kN"], ["Y", f.Y_N, 1e-3, "kN"], ["N", f.N_Nm, 1e-6, "MN m"]].filter(([, x]) => x).map(([n, x, k, u]) => `${n} ${num(k * x)} ${u}`).join(", ");
   return el("article.card", { "aria-label": c.effect }, el(".head", null, el("h3", null, c.effect), p === undefined ? null : el("b", null, `${num(100 * p, 2)} %`), button(on ? "Shown below" : "Show the prediction with it", () => change({ with: c.effect }), { class: "small", id: `with-${c.effect}`, "aria-pressed": String(on), disabled: !told.lines })),
     p === undefined ? null : bar(p, `probability ${num(100 * p, 2)} %`), el("p", null, c.says || ""), el("p", null, ways, force ? `Typical size ${force} (root mean square).` : ""), sizes, changes(told),
-    c.error_without === undefined ? null : el("p.note", null, `On parts that were not used to fit it, the ${asGiven(c.error_horizon_s)} s error falls from ${num(c.error_without)} to ${num(c.error_with)} m; if it is the true cause, ${num(c.error_floor)} m is expected.`),
+    known(c.error_without) && known(c.error_with) ? el("p.note", null, `On parts that were not used to fit it, the ${asGiven(c.error_horizon_s)} s error is ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${known(c.error_floor) ? `; ${num(c.error_floor)} m is expected even with the right cause` : ""}.`) : null,
     c.cannot_be_told_from?.length ? el("p.fair", null, `Cannot be told from ${c.cannot_be_told_from.join(", ")}.`) : null,
     c.over_time?.length ? el("details", null, el("summary", null, "Part by part"), table("Size in each part of a voyage, over its estimate", ["part", ["share"], ["standard error"]], c.over_time.map((o) => [`${o.voyage}, ${asGiven(o.start_s, 5)} to ${asGiven(o.end_s, 5)} s`, num(o.share), num(o.sd)]))) : null);
 }
@@ -81,10 +83,9 @@ const odds = (x) => (x > -0.01 ? "the likeliest" : x > -1 ? "nearly as likely" :
 
 function next(a) {
   const d = a.result, names = d.answer?.lasting || [];
-  const sail = d.next_manoeuvre ? el("p", null, el("b", null, "Sail next: "), `${d.next_manoeuvre.manoeuvre}. ${d.next_manoeuvre.why}`) : null;
   const open = !names.length && ["undecided", "unknown"].includes(d.verdict);
   const other = open ? el("p.note", null, "A voyage of another day and on other courses, asked together with this, tells more.") : null;
-  return [sail, other, names.length ? el(".tools", null, el("a.button", { href: address("add", "", { effects: names.join(","), ship: a.job.asked.ship, voyages: a.job.asked.voyages.join(",") }), id: "to-add" }, `Add ${names.join(" and ")} to the model`)) : null];
+  return [other, names.length ? el(".tools", null, el("a.button", { href: address("add", "", { effects: names.join(","), ship: a.job.asked.ship, voyages: a.job.asked.voyages.join(",") }), id: "to-add" }, `Add ${names.join(" and ")} to the model`)) : null];
 }
 
 function more(d) {
