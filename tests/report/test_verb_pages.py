@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from html import unescape
 
 import numpy as np
@@ -19,7 +20,7 @@ from twin.live.guard import HYBRID, INVALID, PHYSICS, RECKONING, STARTING
 from twin.live.replay_record import MOMENTS_KEPT, SPANS, Kept, Spans
 from twin.recording.write import write_voyage
 from twin.report.curves import Curve, Curves, drawn, thinned
-from twin.report.history_page import history_page, steps_of
+from twin.report.history_page import history_page, sentence, steps_of
 from twin.report.page import PLOTS, html
 from twin.report.training_page import training_page
 
@@ -97,6 +98,16 @@ def test_the_history_begins_with_the_calibration_and_tells_every_step():
         "judged on tuesday (last third)",
     ):
         assert part in said, part
+
+
+def test_the_history_says_that_what_brought_the_fall_was_removed_since():
+    """Test: an effect that was added, judged and removed. Expected: no word that the model without it is as near."""
+    ship = pages.with_history(twin.Ship.load("kvlcc2"))
+    steps = ship.notes["history"][:2]
+    assert sentence(replace(ship, notes=dict(ship.notes) | {"history": steps})) == (
+        "KVLCC2: 2 steps; Current was removed since the last step that was judged: + Current brought the error "
+        "60 s ahead from 21.0 m to 6.00 m, where 2.0 m is expected."
+    )
 
 
 def test_the_page_of_a_training_shows_its_curves_its_proof_and_its_bound():

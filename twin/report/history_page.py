@@ -81,13 +81,14 @@ def sentence(ship: Ship) -> str:
     done = ladder(ship)
     if not done:
         return f"{ship.name}: nothing was added or removed yet; the core stands alone."
-    judged = [s for s in done if s.get("errors")]
     many = f"{len(done)} step{'s' * (len(done) > 1)}"
-    if not judged:
+    last = max((k for k, step in enumerate(done) if step.get("errors")), default=None)
+    if last is None:
         return f"{ship.name}: {many}, none of which was judged on held-out voyages."
-    e = judged[-1]["errors"][-1]
+    gone = ", ".join(dict.fromkeys(name for step in done[last + 1 :] for name in step.get("removed", [])))
+    e, since = done[last]["errors"][-1], f"{gone} was removed since the last step that was judged: "
     return (
-        f"{ship.name}: {many}; {_called(judged[-1], dated=False)} brought the error "
+        f"{ship.name}: {many}; {since * bool(gone)}{_called(done[last], dated=False)} brought the error "
         f"{as_given(e['horizon_s'])} s ahead from {num(e['before_m'], 3)} m to {num(e['after_m'], 3)} m, "
         f"where {num(e['noise_floor_m'], 2)} m is expected."
     )
