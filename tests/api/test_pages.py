@@ -8,6 +8,7 @@ import pytest
 import twin
 import twin.errors
 from twin.api.calibration import Calibration
+from twin.api.tube import TubeCalibration
 from twin.commands.story import MONDAY
 from twin.report.result_page import Bars, PageTable, result_page
 
@@ -38,6 +39,33 @@ def test_a_page_says_its_sentence_what_to_heed_and_draws_every_row():
     assert widths == pytest.approx([130.0, 32.5, 260.0])  # 4, 1 and 8 m: the longest fills its room
     for said in ("<Alma>", "Half & better.", "4.00 m before", "1.00 m now", "60 s 8.00 -"):
         assert said in words(page)
+
+
+def test_counts_and_declared_numbers_stand_in_a_table_as_they_are():
+    """Test: a count, what was declared, what was measured. Expected: all digits of the first two, three of the last."""
+    row = {"count": 1234, "declared": 1234.5, "measured": 1234.5}
+    table = PageTable("All", {name: name for name in row}, [row], given=("declared",))
+    assert "1234 1234.5 1230" in words(result_page("t", "s", parts=(table,)))
+
+
+def test_the_numbers_of_a_first_model_stand_as_they_were_given_with_their_units():
+    said = words(twin.first_model("MV Alma", 187.54, 30.25, 10.5, block_coefficient=0.8).page())
+    for part in ("L_pp 187.54 m given", "B 30.25 m given", "rho 1025 kg/m3 SEA", "C_b 0.8 - given"):
+        assert part in said, part
+
+
+def test_a_horizon_is_told_as_it_was_asked_for():
+    """Test: 125 s. Expected: not 120 s, on the page of a calibration nor of a tube."""
+    held = {"horizon_s": 125.0, "before_m": 20.0, "position_m": 10.0, "before_deg": 2.0, "heading_deg": 1.0}
+    regimes = [{"regime": "straight", "horizon_s": 125.0, "position_m": 9.0}]
+    data = {"held_out": [held], "held_out_is": "last third", "by_regime": regimes, "derivatives": []}
+    found = Calibration(twin.Ship.load("kvlcc2"), data=data | {"refused": "", "doubts": []})
+    said = words(found.page())
+    assert "10.0 m after 125 s" in said and "straight 125 9.00" in said and "120" not in said
+    size = {"voyages": 9, "predictions": 1234, "place_m": 12.0, "heading_deg": 2.0}
+    row = {"horizon_s": 125.0, "level": 0.9, **size, "regimes": [{"regime": "straight", **size}]}
+    said = words(TubeCalibration(found.ship, data={"horizons": [row], "doubts": []}).page())
+    assert "after 125 s, in the mean" in said and "125 0.900 9 1234 12.0" in said and "120" not in said
 
 
 def test_a_page_asks_nobody_for_anything(first):

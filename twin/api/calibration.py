@@ -9,7 +9,7 @@ import numpy as np
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import at_least_one, several
 from twin.errors import DataError
-from twin.num import as_given, num, readable
+from twin.num import as_given, readable
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
@@ -77,14 +77,15 @@ class Calibration(Result):
         last = self.data["held_out"][-1]
         return (
             "The open-loop error in place, on what was not used for the fit, goes from "
-            f"{metres(last['before_m'])} to {metres(last['position_m'])} after {as_given(last['horizon_s'])} s."
+            f"{metres(last['before_m'])} to {metres(last['position_m'])} "
+            f"after {as_given(last['horizon_s'])} s."
         )
 
     def page(self) -> str:
         """The error before and after, by horizon and by what the ship did, and every derivative."""
         from twin.report.result_page import Bars, PageTable, result_page
 
-        rows = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in self.data["held_out"]]
+        rows = [r | {"at": f"after {as_given(r['horizon_s'])} s"} for r in self.data["held_out"]]
         both = {"before_m": "before", "position_m": "now"}
         shown = {
             "name": "derivative",
@@ -101,7 +102,7 @@ class Calibration(Result):
             self.warnings,
             (
                 Bars(f"Open-loop position error ({self.data['held_out_is']})", "m", "at", both, rows),
-                PageTable("By what the ship did", regimes, self.data["by_regime"]),
+                PageTable("By what the ship did", regimes, self.data["by_regime"], given=("horizon_s",)),
                 PageTable("Derivatives", shown, [readable(d) for d in self.data["derivatives"]]),
             ),
         )

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from twin.api.result import Result
 from twin.api.simulation import simulate
 from twin.errors import UsageError, did_you_mean
-from twin.num import as_given, num
+from twin.num import as_given, num, readable
 from twin.physics.actuators import Actuator
-from twin.physics.ship import Ship
+from twin.physics.ship import Ship, to_table
 from twin.study.first_model.first_estimate import OPTIONS, Given
 from twin.study.first_model.first_estimate import first_model as estimated
 from twin.study.first_model.first_trial import IMO, doubts, sea_trial, summary
@@ -52,9 +52,15 @@ class FirstModel(Result):
         return summary(self.ship, self.trial, self.warnings, self.given).splitlines()
 
     def _rows(self) -> Any:
-        notes = self.ship.notes
+        notes, table = self.ship.notes, to_table(self.ship)
         return [
-            {"section": section, "name": name, **entry}
+            {
+                "section": section,
+                "name": name,
+                "value": entry["value"],
+                "unit": table[section].get(name, {}).get("unit", "-"),  # an actuator's own share has none
+                **entry,
+            }
             for section in ("particulars", "derivatives")
             for name, entry in notes[section].items()
         ]
@@ -64,7 +70,13 @@ class FirstModel(Result):
         source."""
         from twin.report.result_page import PageTable, result_page
 
-        columns = {"section": "section", "name": "number", "value": "value", "source": "source"}
+        columns = {
+            "section": "section",
+            "name": "number",
+            "value": "value",
+            "unit": "unit",
+            "source": "source",
+        }
         sources = [{"short": k, "long": v} for k, v in self.ship.notes.get("sources", {}).items()]
         return result_page(
             f"{self.ship.name}: a first model",
@@ -77,7 +89,7 @@ class FirstModel(Result):
                     self._figures(),
                 ),
                 *self._manoeuvres(),
-                PageTable("Numbers", columns, self._rows()),
+                PageTable("Numbers", columns, [readable(r) for r in self._rows()], given=("value",)),
                 PageTable("Sources", {"short": "short", "long": "source"}, sources),
             ),
         )

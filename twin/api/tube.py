@@ -53,20 +53,28 @@ class TubeCalibration(Result):
         from twin.report.result_page import Bars, PageTable, result_page
 
         rows = self._rows()
-        at = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in rows]
+        at = [r | {"at": f"after {as_given(r['horizon_s'])} s"} for r in rows]
         regimes = [{**g, "horizon_s": r["horizon_s"]} for r in self.data["horizons"] for g in r["regimes"]]
         sizes = {"voyages": "voyages", "predictions": "predictions", "place_m": "[m]", "heading_deg": "[deg]"}
         return result_page(
             f"{self.ship.name}: tube around its predictions",
             f"{100 * rows[-1]['level']:.0f} % within {metres(rows[-1]['place_m'])} and "
-            f"{num(rows[-1]['heading_deg'])} deg after {num(rows[-1]['horizon_s'])} s, in the mean.",
+            f"{num(rows[-1]['heading_deg'])} deg after {as_given(rows[-1]['horizon_s'])} s, in the mean.",
             self.warnings,
             (
                 Bars("Place", "m", "at", {"place_m": ""}, at),
                 Bars("Heading", "deg", "at", {"heading_deg": ""}, at),
-                PageTable("By horizon", {"horizon_s": "horizon [s]", "level": "share", **sizes}, rows),
                 PageTable(
-                    "By what the ship does", {"regime": "while", "horizon_s": "horizon [s]", **sizes}, regimes
+                    "By horizon",
+                    {"horizon_s": "horizon [s]", "level": "share", **sizes},
+                    rows,
+                    given=("horizon_s",),
+                ),
+                PageTable(
+                    "By what the ship does",
+                    {"regime": "while", "horizon_s": "horizon [s]", **sizes},
+                    regimes,
+                    given=("horizon_s",),
                 ),
             ),
         )

@@ -26,7 +26,7 @@ def history_page(ship: Ship) -> str:
         (
             Bars(f"Held-out position error{at}", "m", "step", RUNG, last),
             PageTable("Every step", DONE, [_done(s) for s in steps]),
-            PageTable("Error of every step, by horizon", ERRORS, errors),
+            PageTable("Error of every step, by horizon", ERRORS, errors, given=("horizon_s",)),
             PageTable("Evidence", EVIDENCE, [_evidence(s) for s in steps if "evidence" in s]),
             PageTable("Voyages behind it", VOYAGES, [row for s in steps for row in _voyages(s)]),
         ),

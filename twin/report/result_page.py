@@ -1,12 +1,12 @@
 """The page of a result that needs no track: a sentence, what to heed, bars and tables, in one file without a
 script."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from html import escape
 from importlib import resources
 from typing import Any, NamedTuple
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.report.curves import Curves, Drawings
 from twin.report.curves import drawn as curves_drawn
 from twin.report.curves import legend as curves_legend
@@ -28,11 +28,12 @@ class Bars(NamedTuple):
 
 
 class PageTable(NamedTuple):
-    """Rows of one kind; `columns`: key -> heading, with its unit."""
+    """Rows of one kind; `columns`: key -> heading, with its unit; `given`: the keys of what was declared."""
 
     caption: str
     columns: Mapping[str, str]
     rows: Sequence[Mapping[str, Any]]
+    given: Collection[str] = ()
 
 
 Part = Bars | PageTable | Curves | Drawings
@@ -84,7 +85,10 @@ def _table(table: PageTable) -> str:
     numeric = {k for k in names if any(_is_number(row.get(k)) for row in table.rows)}
     side = {k: " class=n" * (k in numeric) for k in names}
     heads = "".join(f"<th{side[k]}>{escape(v)}</th>" for k, v in names.items())
-    cells = ["".join(f"<td{side[k]}>{_cell(row.get(k))}</td>" for k in names) for row in table.rows]
+    cells = [
+        "".join(f"<td{side[k]}>{_cell(row.get(k), k in table.given)}</td>" for k in names)
+        for row in table.rows
+    ]
     rows = "".join(f"<tr>{row}</tr>" for row in cells)
     return _scrolled(f"Table: {', '.join(names.values())}", f"<table><tr>{heads}</tr>{rows}</table>")
 
@@ -98,12 +102,15 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _cell(value: Any) -> str:
+def _cell(value: Any, given: bool = False) -> str:
+    """A count or what was `given` with all its digits, else three."""
     if value is None or value == "":
         return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return num(value, 3) if _is_number(value) else escape(str(value))
+    if not isinstance(value, float):
+        return escape(str(value))
+    return as_given(value) if given else num(value, 3)
 
 
 def _bars(bars: Bars) -> str:
