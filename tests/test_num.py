@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.num import as_given, num, percent, readable
+from twin.num import as_given, num, on_axis, percent, readable
 from twin.study.calibration.calibration_lines import sizes_in_words
 from twin.study.diagnosis.tell_diagnosis import candidate_lines, weather_lines
 from twin.study.fleet.fleet_lines import size, slope
@@ -51,6 +51,24 @@ def test_a_difference_is_told_with_its_sign():
 ])  # fmt: skip
 def test_a_declared_number_stands_as_it_was_given(value, said):
     assert as_given(value) == said
+
+
+MARKS = [
+    ([57.690 + 0.001 * k for k in range(6)], ["57.69", "57.691", "57.692", "57.693", "57.694", "57.695"]),
+    ([180.1, 180.15, 180.2], ["180.1", "180.15", "180.2"]),
+    ([-2.5, -1.25, 0.0, 1.25], ["-2.5", "-1.25", "0", "1.25"]),
+    ([0.0, 20000.0, 40000.0], ["0", "20000", "40000"]),
+    ([6412345.5, 6412346.0], ["6412345.5", "6412346"]),
+    ([1e-7, 2e-7], ["1e-7", "2e-7"]),
+    ([0.001, 0.01, 0.1, 1.0, 10.0], ["0.001", "0.01", "0.1", "1", "10"]),
+    ([3.0], ["3"]),
+    ([], []),
+]
+
+
+@pytest.mark.parametrize("marks, said", MARKS)
+def test_the_marks_of_an_axis_are_told_from_each_other(marks, said):
+    assert on_axis(marks) == said
 
 
 def test_a_share_is_told_in_whole_per_cent():
@@ -119,6 +137,16 @@ def test_the_pages_tell_a_number_by_the_same_rule():
     done = subprocess.run(["node", "-e", script], capture_output=True, text=True, timeout=60, check=True)
     told = [[text.replace("\u202f", "") for text in row] for row in json.loads(done.stdout)]
     assert told == [[num(x, 3), num(x, 2), as_given(x)] for x in values]
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node")
+def test_the_pages_tell_the_marks_of_an_axis_by_the_same_rule():
+    script = (ROOT / "twin" / "report" / "number.js").read_text() + (
+        f"console.log(JSON.stringify({[marks for marks, _ in MARKS]}.map(onAxis)));"
+    )
+    done = subprocess.run(["node", "-e", script], capture_output=True, text=True, timeout=60, check=True)
+    told = [[text.replace("\u202f", "") for text in row] for row in json.loads(done.stdout)]
+    assert told == [said for _, said in MARKS]
 
 
 COMPASS = {  # by hand: 0.1 rad is 5.7296 deg

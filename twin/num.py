@@ -2,11 +2,12 @@
 
 `num`: what was measured or estimated, to so many significant digits, its known zeros included (2.0, 160).
 `as_given`: what was declared, or read off a clock (a setting, a limit, a time), without further zeros (120).
+`on_axis`: the marks of an axis, which are declared too.
 `readable`: the unit in which a number is told: files and JSON hold radians, and a person reads degrees.
 """
 
-from collections.abc import Mapping
-from math import isfinite, pi
+from collections.abc import Mapping, Sequence
+from math import floor, inf, isfinite, log10, pi
 from typing import Any
 
 LEAST_POWER, GREATEST_POWER = -4, 12  # powers of ten between which a number is told by its digits alone
@@ -40,6 +41,12 @@ def as_given(value: float, digits: int = 6) -> str:
     whole = 10.0**digits <= abs(value) < 10.0**GREATEST_POWER
     head, point, power = (f"{value:.0f}" if whole else num(value, digits)).partition("e")
     return (head.rstrip("0").rstrip(".") if "." in head else head) + point + power
+
+
+def on_axis(marks: Sequence[float]) -> list[str]:
+    """The marks of an axis, evenly apart, each with as many digits as tell it from the next: 57.69, 57.7."""
+    step = abs(marks[1] - marks[0]) if len(marks) > 1 else inf
+    return [as_given(v, max(4, floor(log10(abs(v) / step or 1.0)) + 4)) for v in marks]
 
 
 def percent(share: float) -> str:

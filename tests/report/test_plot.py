@@ -84,6 +84,26 @@ def test_the_value_beside_the_cursor_is_there_wherever_the_line_is(page):
     assert values["heading"] != "–"
 
 
+# what is written on a canvas beside its lines while it is drawn
+WRITTEN = """((draw) => {{
+  const told = [], pen = CanvasRenderingContext2D.prototype, real = pen.fillText;
+  pen.fillText = function (text, ...at) {{ told.push(text); return real.call(this, text, ...at); }};
+  draw(); pen.fillText = real; return told;
+}})({draw})"""
+
+
+def test_the_marks_of_an_axis_are_told_from_each_other(page):
+    """Test: a panel whose line changes by 5 mm. Expected: no mark of its axis stands twice."""
+    told = page.value(
+        "(() => { const t = new Float64Array([0, 900]), y = new Float64Array([57.690, 57.695]), before = view.panels.length;"
+        " plot(200, [{ data: { t, y }, colour: 'model' }], { label: 'x' }); const panel = view.panels.pop();"
+        " document.body.append(panel.box);"
+        f" const told = {WRITTEN.format(draw='() => panel.draw()')};"
+        " panel.box.remove(); return told; })()"
+    )
+    assert len(told) > 4 and len(set(told)) == len(told) and "57.691" in told
+
+
 NAMES = {
     "port.pwm_us": ["port pwm", "us"],
     "port.rate_rev_s": ["port rate", "1/s"],

@@ -280,6 +280,15 @@ def test_any_numbers_make_a_drawing_whose_points_are_inside_it(values):
             assert 0.0 <= x <= wide and 0.0 <= y <= high
 
 
+def test_the_marks_of_a_drawings_axes_are_told_from_each_other():
+    """Test: a position that changes by 5 mm in 10 ms, late in a voyage. Expected: no mark stands twice."""
+    points = [(36000.0 + 1e-3 * k, 57.690 + 5e-4 * k) for k in range(11)]
+    text = drawn(Curves("c", "", "", [Curve("line", "--model", points)]))
+    marks = {side: re.findall(rf'anchor="{side}"[^>]*>([^<]+)<', text) for side in ("middle", "end")}
+    assert all(len(told) > 2 and len(set(told)) == len(told) for told in marks.values())
+    assert "57.692" in marks["end"] and "36000.005" in marks["middle"]
+
+
 @thorough
 def test_the_page_of_a_diagnosis_expects_of_the_ship_what_compare_expects(tmp_path):
     """Test: Monday's diagnosis as a page, and compare of the same voyage. Expected: the same expected errors."""

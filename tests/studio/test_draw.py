@@ -62,3 +62,30 @@ def test_the_difference_to_positions_that_were_read_seldom_is_a_line(page):
 
 def test_every_channel_is_named_with_its_unit_as_on_the_report(page):
     assert drawn(page, f"return {list(NAMES)}.map(m.dom.named);") == list(NAMES.values())
+
+
+def test_the_marks_of_an_axis_are_told_from_each_other(page):
+    """Test: a line that changes by 5 mm within 50 ms, as a chart, over time and as a picture to save. Expected: no mark
+    stands twice on an axis."""
+    charted, plotted, saved = drawn(
+        page,
+        "const x = Array.from({ length: 11 }, (_, i) => 36000 + 0.005 * i), y = x.map((_, i) => 57.69 + 5e-4 * i);"
+        "const marks = (svg, side) => [...svg.querySelectorAll(`text[text-anchor=${side}]`)].map((e) => e.textContent);"
+        "const both = (svg) => [marks(svg, 'end'), marks(svg, 'middle')];"
+        "const wait = () => new Promise((d) => setTimeout(d, 300));"
+        "const made = m.draw.chart('c', [{ name: 'a', x, y, look: 'c-model' }]); document.body.prepend(made);"
+        "await wait(); const charted = both(made.querySelector('.draw svg')); made.remove();"
+        "const told = [], pen = CanvasRenderingContext2D.prototype, real = pen.fillText;"
+        "pen.fillText = function (text, ...at) { told.push(text); return real.call(this, text, ...at); };"
+        "const line = { name: 'a', t: new Float64Array(x), y: new Float64Array(y), look: 'c-model' };"
+        "const figure = m.plot.timePlot('t', [line], { view: m.plot.timeView() }); document.body.prepend(figure);"
+        "await wait(); pen.fillText = real;"
+        "const append = document.body.append, kept = [];"
+        "document.body.append = (e) => { kept.push(both(e)); append.call(document.body, e); };"
+        "[...figure.querySelectorAll('button')].find((b) => b.textContent === 'SVG').click(); await wait();"
+        "delete document.body.append; figure.remove(); return [charted, [told], kept[0]];",
+    )
+    for axes in (charted, plotted, saved):
+        for marks in axes:
+            assert len(marks) > 2 and len(set(marks)) == len(marks), marks
+    assert not page.said

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.num import as_given
+from twin.num import on_axis
 
 WIDE, HIGH, LOW = 640, 260, 170  # of the drawing; its height where it is one of many [px]
 LEFT, RIGHT, TOP, BOTTOM = 64, 26, 26, 40  # room for numbers and words around it [px]
@@ -113,14 +113,14 @@ def legend(curves: Curves) -> str:
 def _grid(across: _Axis, up: _Axis, at, curves: Curves) -> list[str]:  # type: ignore[no-untyped-def]
     (left, bottom), (right, top) = at(across.low, up.low), at(across.high, up.high)
     out = []
-    for y in up.marks:
+    for y, said in zip(up.marks, on_axis(up.marks), strict=True):
         h = at(across.low, y)[1]
         out.append(f'<path d="M{left:.1f} {h:.1f}H{right:.1f}" stroke="var(--line)"/>')
-        out.append(_text(left - 7, h + 4, as_given(y, 4), "end"))
-    for x in across.marks:
+        out.append(_text(left - 7, h + 4, said, "end"))
+    for x, said in zip(across.marks, on_axis(across.marks), strict=True):
         v = at(x, up.low)[0]
         out.append(f'<path d="M{v:.1f} {top:.1f}V{bottom:.1f}" stroke="var(--faint)"/>')
-        out.append(_text(v, bottom + 17, as_given(x, 5), "middle"))
+        out.append(_text(v, bottom + 17, said, "middle"))
     out.append(_text(right, bottom + 34, curves.x, "end"))
     out.append(_text(left, top - 10, curves.y, "start"))
     return out

@@ -17,6 +17,12 @@ function asGiven(x, digits = 6) {
   return (head.includes(".") ? head.replace(/\.?0+$/, "") : head) + (power ? `e${power}` : "");
 }
 
+/** The marks of an axis, evenly apart, each with as many digits as tell it from the next: 57.69, 57.7. */
+function onAxis(marks) {
+  const step = marks.length > 1 ? Math.abs(marks[1] - marks[0]) : Infinity;
+  return marks.map((v) => asGiven(v, Math.max(4, Math.floor(Math.log10(Math.abs(v) / step || 1)) + 4)));
+}
+
 const thin = (text) => text.replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, "\u202f");
 
 const READABLE = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI], "1/rad": ["1/deg", Math.PI / 180] };

@@ -177,11 +177,12 @@ function paint(start, series, options) {
 
 function grid(pen, X, Y, width, height, low, high, options) {
   pen.strokeStyle = colour("faint"); pen.fillStyle = colour("weak"); pen.lineWidth = 1; pen.textAlign = "right"; pen.textBaseline = "middle";
-  for (const v of steps(low, high, Math.max(2, Math.floor(height / 24)))) {
+  const marks = steps(low, high, Math.max(2, Math.floor(height / 24))), told = onAxis(marks);
+  marks.forEach((v, i) => {
     const y = Math.round(Y(v)) + 0.5;
     pen.beginPath(); pen.moveTo(LEFT, y); pen.lineTo(width, y); pen.stroke();
-    if (y > 4 && y < height - 3) pen.fillText(asGiven(v, 4), LEFT - 6, y);
-  }
+    if (y > 4 && y < height - 3) pen.fillText(told[i], LEFT - 6, y);
+  });
   for (const t of timeSteps(view.from, view.to, width)) { const x = Math.round(X(t)) + 0.5; pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height); pen.stroke(); }
 }
 

@@ -74,6 +74,6 @@ def page_files() -> dict[str, tuple[str, bytes]]:
             out[path] = (f"{kind}; charset=utf-8", file.read_bytes())
     number = (files("twin.report") / "number.js").read_text(
         encoding="utf-8"
-    ) + "export { asGiven, num, readable };\n"
+    ) + "export { asGiven, num, onAxis, readable };\n"
     out["/app/number.js"] = (f"{KINDS['js']}; charset=utf-8", number.encode())  # the same on report pages
     return out

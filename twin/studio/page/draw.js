@@ -1,13 +1,14 @@
 // Drawings as SVG: lines over any axis, ways over ground, heat strips. Colours are classes, so that each light has its own.
 
 import { el, named, svg } from "/app/dom.js";
-import { asGiven, num } from "/app/number.js";
+import { asGiven, num, onAxis } from "/app/number.js";
 import { keepers } from "/app/save.js";
 
-export function ticks(low, high, count) {
+/** The marks of an axis: [where, what is said there]. */
+export function marked(low, high, count) {
   const raw = (high - low) / count || 1, power = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw * 0.999), out = [];
   for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) out.push(Math.abs(v) < step * 1e-6 ? 0 : v);
-  return out;
+  return onAxis(out).map((said, i) => [out[i], said]);
 }
 
 const finite = (list) => [...list].filter((v) => v === v && v !== null);
@@ -39,8 +40,8 @@ function lined(title, lines, o, width) {
   const X = (x) => left + (x - x0) * kx, Y = (y) => height - bottom - (y - y0) * ky;
   const words = `${title}. ${lines.filter((l) => l.name).map((l) => `${l.name}: ${summary(l)}`).join("; ")}`;
   const out = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": words });
-  for (const t of ticks(y0, y1, Math.max(2, height / 55))) out.append(svg("path", { class: "grid", d: `M${left} ${Y(t).toFixed(1)}H${width - right}` }), svg("text", { x: left - 6, y: Y(t) + 4, "text-anchor": "end" }, asGiven(t, 4)));
-  for (const t of ticks(x0, x1, Math.max(2, (width - left) / 85))) out.append(svg("path", { class: "grid", d: `M${X(t).toFixed(1)} ${top}V${height - bottom}` }), svg("text", { x: X(t), y: height - bottom + 15, "text-anchor": "middle" }, asGiven(t, 4)));
+  for (const [t, said] of marked(y0, y1, Math.max(2, height / 55))) out.append(svg("path", { class: "grid", d: `M${left} ${Y(t).toFixed(1)}H${width - right}` }), svg("text", { x: left - 6, y: Y(t) + 4, "text-anchor": "end" }, said));
+  for (const [t, said] of marked(x0, x1, Math.max(2, (width - left) / 85))) out.append(svg("path", { class: "grid", d: `M${X(t).toFixed(1)} ${top}V${height - bottom}` }), svg("text", { x: X(t), y: height - bottom + 15, "text-anchor": "middle" }, said));
   out.append(svg("text", { class: "strong", x: (left + width - right) / 2, y: height - 4, "text-anchor": "middle" }, o.x || ""), svg("text", { class: "strong", x: 2, y: 10 }, o.y || ""));
   for (const m of o.marks || []) out.append(svg("path", { class: "l c-wrong dashed", d: `M${left} ${Y(m.y)}H${width - right}` }), svg("text", { class: "strong", x: width - right, y: Y(m.y) - 5, "text-anchor": "end" }, m.text));
   for (const l of lines) {
@@ -86,7 +87,7 @@ export function heatStrip(voyage, heat, view) {
         drawing.append(svg("rect", { class: `heat${look}`, x: x.toFixed(1), y: k * row + 1, width: (next - x + 0.6).toFixed(1), height: row - 2 }));
       }
     });
-    for (const t of ticks(heat.t[0], end, Math.max(2, (width - names) / 90))) if (X(t) < width - 20) drawing.append(svg("text", { x: X(t), y: height - 5, "text-anchor": "middle" }, `${asGiven(t, 5)} s`));
+    for (const [t, said] of marked(heat.t[0], end, Math.max(2, (width - names) / 90))) if (X(t) < width - 20) drawing.append(svg("text", { x: X(t), y: height - 5, "text-anchor": "middle" }, `${said} s`));
     if (view.from !== null) drawing.append(svg("rect", { class: "heatbox", x: X(Math.max(view.from, heat.t[0])), y: 0.8, width: Math.max(X(Math.min(view.to, end)) - X(Math.max(view.from, heat.t[0])), 2), height: height - 22 }));
     box.replaceChildren(drawing);
   };

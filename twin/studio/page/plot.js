@@ -2,8 +2,8 @@
 
 import { change, route } from "/app/api.js";
 import { button, el, svg } from "/app/dom.js";
-import { asGiven, num } from "/app/number.js";
-import { ticks } from "/app/draw.js";
+import { asGiven, num, onAxis } from "/app/number.js";
+import { marked } from "/app/draw.js";
 import { joined, spread, torn } from "/app/lines.js";
 import { keepers } from "/app/save.js";
 
@@ -75,7 +75,7 @@ function paint(self, box, data, lines, options, view, readout) {
   self.plot = new uPlot({
     width, height: options.height || 170, legend: { show: false }, pxAlign: false, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, y: false },
     scales: { x: { time: false, min: from, max: to }, y: { range: options.band ? (u, low, high) => { const m = Math.max(Math.abs(low), Math.abs(high), 2.5 * options.band); return [-m, m]; } : (u, low, high) => uPlot.rangeNum(low ?? 0, high ?? 1, 0.08, true) } },
-    axes: [{ ...axis, size: 30, space: 70, values: (u, v) => v.map((x) => `${asGiven(x, 6)}`) }, { ...axis, size: 56, space: 26, values: (u, v) => v.map((x) => asGiven(x, 4)) }],
+    axes: [{ ...axis, size: 30, space: 70, values: (u, v) => onAxis(v) }, { ...axis, size: 56, space: 26, values: (u, v) => onAxis(v) }],
     series: [{}, ...lines.map((l) => ({ stroke: look(l.look), width: l.width || (data[0].length > DENSE * width ? 1 : 1.6), dash: l.look.includes("dashed") ? [7, 5] : l.look.includes("dots") ? [2, 4] : undefined, points: { show: false }, spanGaps: false, ...(data.holes?.length ? { gaps: torn(data.holes) } : {}) }))],
     hooks: {
       setSelect: [(u) => { if (u.select.width > 4) { view.set(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x")); u.setSelect({ width: 0, height: 0 }, false); } }],
@@ -101,8 +101,8 @@ function drawn(title, data, lines, options, view) {
   for (const v of ys) { if (v < low) low = v; if (v > high) high = v; }
   if (!(low < high)) { low -= 1; high += 1; }
   const X = (t) => left + ((t - a) / (b - a)) * (width - left - 12), Y = (v) => height - 30 - ((v - low) / (high - low)) * (height - 60), out = svg("svg", { viewBox: `0 0 ${width} ${height}` });
-  for (const v of ticks(low, high, 5)) out.append(svg("path", { class: "grid", d: `M${left} ${Y(v)}H${width - 12}` }), svg("text", { x: left - 6, y: Y(v) + 4, "text-anchor": "end" }, asGiven(v, 4)));
-  for (const t of ticks(a, b, 8)) out.append(svg("text", { x: X(t), y: height - 12, "text-anchor": "middle" }, `${asGiven(t, 6)} s`));
+  for (const [v, said] of marked(low, high, 5)) out.append(svg("path", { class: "grid", d: `M${left} ${Y(v)}H${width - 12}` }), svg("text", { x: left - 6, y: Y(v) + 4, "text-anchor": "end" }, said));
+  for (const [t, said] of marked(a, b, 8)) out.append(svg("text", { x: X(t), y: height - 12, "text-anchor": "middle" }, `${said} s`));
   out.append(svg("text", { class: "strong", x: left, y: 16 }, `${title}${options.unit ? ` [${options.unit}]` : ""}: ${lines.map((l) => l.name).join(", ")}`));
   lines.forEach((l, k) => {
     let d = "", up = true;
