@@ -117,3 +117,17 @@ NAMES = {
 
 def test_every_channel_is_named_with_its_unit(page):
     assert page.value(f"{list(NAMES)}.map(named)") == list(NAMES.values())
+
+
+def test_the_heat_strip_of_one_window_is_coloured_to_the_end_of_the_voyage(page):
+    """Test: one window that begins at 25 s of 100. Expected: its colour in the last three quarters of the strip."""
+    share = page.value(
+        "(() => { const heat = { t: [25], rows: [{ name: 'north_m', y: [16] }] }, kept = [view.from, view.to];"
+        " const before = view.watchers.length, c = heatStrip({ name: 'one', start_s: 0, end_s: 100, heat });"
+        " document.querySelector('section').append(c); [view.from, view.to] = [0, 100];"
+        " view.watchers[before](); view.watchers.length = before; [view.from, view.to] = kept;"
+        " const { data, width } = c.getContext('2d').getImageData(210, 10, c.width - 210, 1);"
+        " const at = Array.from({ length: width }, (_, x) => 4 * x).filter((i) => data[i] > data[i + 1] + 60);"
+        " c.remove(); return at.length / width; })()"
+    )
+    assert share == pytest.approx(0.75, abs=0.02)

@@ -89,3 +89,18 @@ def test_the_marks_of_an_axis_are_told_from_each_other(page):
         for marks in axes:
             assert len(marks) > 2 and len(set(marks)) == len(marks), marks
     assert not page.said
+
+
+def test_the_heat_strip_of_one_window_reaches_to_the_end_of_the_voyage(page):
+    """Test: one window that begins at 20 s of 140. Expected: the times below it are those, its colour has a width."""
+    times, width = drawn(
+        page,
+        "const packed = (x) => btoa(String.fromCharCode(...new Uint8Array(new Float32Array(x).buffer)));"
+        "const heat = { t: packed([20]), rows: [{ name: 'north_m', y: packed([5]) }] };"
+        "const made = m.compare.heatOf({ name: 'one', start_s: 0, end_s: 140, heat }, m.plot.timeView());"
+        "document.body.prepend(made); await new Promise((d) => setTimeout(d, 100));"
+        "const times = [...made.querySelectorAll('.draw text[text-anchor=middle]')].map((e) => e.textContent);"
+        "const width = Number(made.querySelector('.draw rect').getAttribute('width')); made.remove();"
+        "return [times, width];",
+    )
+    assert {"40 s", "80 s", "120 s"} <= set(times) and width > 100 and not page.said

@@ -66,7 +66,7 @@ function heatStrip(v) {
       pen.fillStyle = colour("soft"); pen.textAlign = "left"; pen.fillText(named(r.name)[0], 0, k * row + row / 2);
       for (let i = 0; i < t.length; i++) {
         if (r.y[i] !== r.y[i]) continue;
-        const x = X(t[i]), end = i + 1 < t.length ? X(t[i + 1]) : Math.min(X(t[i] + (t[1] - t[0])), width);
+        const x = X(t[i]), end = i + 1 < t.length ? X(t[i + 1]) : i ? Math.min(X(t[i] + (t[1] - t[0])), width) : width;
         pen.fillStyle = shades[Math.round(Math.min(Math.max(Math.log(r.y[i]) / Math.log(HEAT_TOP), 0), 1) * 60)];
         pen.fillRect(x, k * row + 1, end - x + 0.6, row - 2);
       }

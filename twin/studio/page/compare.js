@@ -72,7 +72,7 @@ function whereCard(a, view, voyage) {
 }
 
 export function heatOf(v, view) {
-  return heatStrip(v.name, { t: unpack(v.heat.t), rows: v.heat.rows.map((row) => ({ name: row.name, y: unpack(row.y) })) }, view);
+  return heatStrip(v.name, { t: unpack(v.heat.t), end_s: v.end_s, rows: v.heat.rows.map((row) => ({ name: row.name, y: unpack(row.y) })) }, view);
 }
 
 const AXES = { X_N: ["X, ahead", "kN", 1e-3], Y_N: ["Y, to starboard", "kN", 1e-3], N_Nm: ["N, turning to starboard", "MN m", 1e-6] };

@@ -76,7 +76,7 @@ export function heatStrip(voyage, heat, view) {
   const title = `Error over noise, ${voyage}`, box = el(".draw");
   let drawing = null;
   const paint = () => {
-    const width = Math.max(Math.round(box.clientWidth) || 480, 240), names = width < 520 ? 112 : 190, row = 21, end = heat.t.length > 1 ? heat.t.at(-1) + heat.t[1] - heat.t[0] : 1, X = (t) => names + ((t - heat.t[0]) / (end - heat.t[0])) * (width - names), height = row * heat.rows.length + 22;
+    const width = Math.max(Math.round(box.clientWidth) || 480, 240), names = width < 520 ? 112 : 190, row = 21, end = heat.t.length > 1 ? heat.t.at(-1) + heat.t[1] - heat.t[0] : heat.end_s, X = (t) => names + ((t - heat.t[0]) / (end - heat.t[0])) * (width - names), height = row * heat.rows.length + 22;
     const worst = heat.rows.map((r) => [named(r.name)[0], Math.max(...finite(r.y))]).sort((a, b) => b[1] - a[1])[0];
     drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${title}: largest in ${worst[0]}, ${num(worst[1])} times its noise` });
     heat.rows.forEach((r, k) => {
