@@ -48,9 +48,9 @@ def stitched(track: Track, model: Model, longest_s: float) -> tuple[np.ndarray, 
     begins = np.isfinite(w.seen[w.start, :3]).all(1)
     line = np.full((len(track), len(READINGS)), np.nan)
     for j, (start, end) in enumerate(zip(w.start, [*w.start[1:], len(track) - 1], strict=True)):
-        steps = slice(start + 1, min(end, start + w.lead[-1]) + 1)
-        known = np.logical_and.accumulate(track.whole[start : steps.stop])[1:] & begins[j]
-        line[steps] = np.where(known[:, None], w.promised[MODEL, : known.size, j], np.nan)
+        lead = w.lead[w.lead <= end - start]
+        known = np.logical_and.accumulate(track.whole[start : end + 1])[lead] & begins[j]
+        line[start + lead] = np.where(known[:, None], w.promised[MODEL, : lead.size, j], np.nan)
     return line, w.start
 
 
