@@ -40,6 +40,10 @@ def compared(project):
     return project
 
 
+def test_nothing_is_sailed_for_the_page_of_a_project(compared):
+    assert "trial" not in content(compared)["about"]
+
+
 def test_a_project_in_which_nothing_was_done_says_so_and_what_to_do(tmp_path):
     project = Project(tmp_path)
     empty = content(project)

@@ -147,7 +147,7 @@ class Studio:
 
     async def ship(self, request: Request) -> Any:
         path = self.project.existing(request.path_params["name"])
-        return await run_in_threadpool(lambda: self.trials.described(load(path)))
+        return await run_in_threadpool(lambda: self.trials.shown(load(path)))
 
     async def turn(self, request: Request) -> Any:
         ship, voyage = (self.project.existing(request.query_params.get(k, "")) for k in ("ship", "voyage"))
@@ -167,7 +167,7 @@ class Studio:
         ship, warnings = await run_in_threadpool(
             self.trials.made, str(said.get("name") or "ship"), said.get("values")
         )
-        told = await run_in_threadpool(self.trials.described, ship)
+        told = await run_in_threadpool(self.trials.shown, ship)
         command = self.trials.command(ship.name, said["values"], str(said.get("output") or "SHIP.toml"))
         return told | {"warnings": warnings, "command": command}
 

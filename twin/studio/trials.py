@@ -78,13 +78,12 @@ def command(name: str, values: Mapping[str, Any], output: str) -> str:
 
 
 def described(ship: Ship) -> dict[str, Any]:
-    """Everything that the ship's page shows of it."""
+    """What the ship's file says of it."""
     notes: Mapping[str, Any] = ship.notes
     return plain(
         {
             "ship": ship.name,
             "sources": notes.get("sources", {}),
-            "trial": trial(ship),
             "effects": [_effect(e) for e in ship.effects],
             "particulars": _numbers(ship, notes.get("particulars", {})),
             "derivatives": _numbers(ship.derivatives, notes.get("derivatives", {})),
@@ -92,6 +91,11 @@ def described(ship: Ship) -> dict[str, Any]:
             "history": ladder(ship),
         }
     )
+
+
+def shown(ship: Ship) -> dict[str, Any]:
+    """Everything that the ship's page shows of it: its file, and how it sails."""
+    return described(ship) | {"trial": plain(trial(ship))}
 
 
 def _effect(effect: Any) -> dict[str, Any]:
