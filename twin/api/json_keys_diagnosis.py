@@ -116,6 +116,9 @@ DIAGNOSE = (
     JsonKey("voyages[]", "", "names of the voyages"),
     JsonKey("references[]", "", "names of the reference voyages", "some were given"),
     JsonKey("calibrated", "", "whether the ship was calibrated, or reference voyages were given"),
+    JsonKey(
+        "learned_since[]", "", "causes that the ship's calibration knew not, or not with all numbers", "older"
+    ),
     *WAVES_AND_JUMPS,
     JsonKey("identifiability.*", "", "what a voyage can tell at all", "--identifiability"),
     *CHECKS,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from twin.study.diagnosis.against_healthy import healthy_in_words
+from twin.study.diagnosis.against_healthy import healthy_in_words, since_in_words
 
 
 def said(references: int, reach: int, asked: int = 1) -> str:
@@ -53,3 +53,13 @@ def test_enough_references_ask_for_no_more():
 def test_a_ship_file_without_scores_says_what_to_do():
     assert "calibrate again" in healthy_in_words({"p_value": None, "calibrated": True})
     assert "never calibrated" in healthy_in_words({"p_value": None, "calibrated": False})
+
+
+def test_a_ship_file_older_than_a_cause_is_named_with_it_and_one_that_is_not_says_nothing():
+    (one,) = since_in_words(["Loading"])
+    assert "calibrated when Loading was not known" in one and one.endswith("Calibrate again.")
+    assert (
+        "Loading, ActuatorLag.port+starboard were"
+        in since_in_words(["Loading", "ActuatorLag.port+starboard"])[0]
+    )
+    assert since_in_words([]) == []

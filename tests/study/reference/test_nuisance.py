@@ -12,7 +12,7 @@ from twin.study.diagnosis.assemble import of_tracks
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.linear import linearise
 from twin.study.reference.between import BetweenVoyages, scattered
-from twin.study.reference.nuisance import TEMPER, Known, known_from, usual_unknowns
+from twin.study.reference.nuisance import TEMPER, Known, known_from, lasting, learned_since, usual_unknowns
 from twin.study.track.track import track
 
 RUDDER = "SteeringLag.delay"
@@ -92,3 +92,18 @@ def test_an_antenna_whose_place_the_owner_knows_is_no_candidate_and_takes_nothin
         case = of_tracks(sailed, placed, asked=asked)
         assert ("AntennaOffset" in case.candidates) is there
         assert any(u.owner == "AntennaOffset" for u in case.unknowns) is there
+
+
+def test_a_calibration_that_lacks_a_number_of_a_cause_is_older_than_it_and_none_is_older_than_nothing():
+    """Test: labels as a calibration writes them, then without one number of a load. Expected: the load alone;
+    of an uncalibrated ship, and where the file has a fault that no calibration fits, nothing."""
+    ship, known = load("kvlcc2"), of_ship(load("kvlcc2"))
+    every = [u.label for u in lasting(Model.of(ship), known)]
+
+    def of(labels, *effects):
+        notes = {**ship.notes, "structural": {"labels": labels}} if labels else {}
+        return learned_since(Model.of(replace(ship.with_effects(*effects), notes=notes)), known)
+
+    assert of(every) == [] and of([]) == []
+    assert of([x for x in every if x != "Loading.N_ur"]) == ["Loading"]
+    assert of(every, find("GyroBias")()) == []

@@ -10,6 +10,8 @@ A load that stands farther aft trims it by the stern, trim / T = -(shift / L) C_
 aft with its draught:
     Y_uv -> (1 + 0.67 trim / T) Y_uv,  N_uv -> N_uv - 0.27 trim / T Y_uv,  Y_ur -> (1 + 0.8 trim / T) Y_ur,
         N_ur -> (1 + 0.3 trim / T) N_ur
+Such regressions miss the derivatives of any one hull by a tenth or two. What added mass, lift and damping
+have beyond them are numbers of the load, too.
 """
 
 from dataclasses import replace
@@ -30,6 +32,14 @@ BLUNT = {
     "N_ur": (0.16, 0.0),
 }  # a of each, and a over C_b; the terms in B/L left out
 LIFT = {"Y_uv": 0.67, "Y_ur": 0.8, "N_ur": 0.3}  # share by which a trim of one draught raises them
+OWN = (
+    "Y_vdot",
+    "N_rdot",
+    "Y_uv",
+    "Y_ur",
+    "N_uv",
+    "N_ur",
+)  # what a hull has otherwise than regressions over many hulls
 LEVER = -0.27  # [L] by which N_uv changes with Y_uv
 SUPERSTRUCTURE_SHARE = (
     0.2  # share of the area above the water that stays: superstructure, however deep it lies
@@ -63,6 +73,24 @@ class Loading(Force):
         doc="shift of the centre of gravity, ahead positive; with the trim that follows, so that a loading "
         "computer's number is near it",
     )
+    Y_vdot: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="Y_vdot beyond what the regressions say, as a share of it"
+    )
+    N_rdot: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="N_rdot beyond what the regressions say, as a share of it"
+    )
+    Y_uv: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="Y_uv beyond what the regressions say, as a share of it"
+    )
+    Y_ur: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="Y_ur beyond what the regressions say, as a share of it"
+    )
+    N_uv: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="N_uv beyond what the regressions say, as a share of it"
+    )
+    N_ur: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="N_ur beyond what the regressions say, as a share of it"
+    )
 
     def alter(self, ship: S) -> S:
         m, k, x_G = ship.m * (1.0 + self.mass), 1.0 + self.draught, ship.x_G + self.x_G
@@ -71,6 +99,8 @@ class Loading(Force):
         trim = -self.x_G * trim_per_shift(ship)
         primes["N_uv"] = primes["N_uv"] + LEVER * trim * primes["Y_uv"]
         primes |= {name: primes[name] * (1.0 + share * trim) for name, share in LIFT.items()}
+        for name in OWN:
+            primes[name] = primes[name] * (1.0 + getattr(self, name))
         primes["X_udot"] = d.X_udot * (1.0 + self.mass) / k
         side, bottom = 1.7 * ship.T, ship.C_b * ship.B
         wetter = (side * k + bottom) / (side + bottom) / k

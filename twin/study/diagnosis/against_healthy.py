@@ -1,14 +1,38 @@
 """What the p-value of a diagnosis means, in words an owner can act on (the number: reference/healthy.py)."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from twin.num import num
+from twin.study.reference.healthy import Healthy
 
 UNCALIBRATED = (
     "careful: this ship was never calibrated, so that what is missing may be no more than its first "
     "estimates, and every size is rough. Calibrate it first."
 )
 ONE_IN = 20  # healthy voyages, one of which is rare: the 95 % of every interval
+
+
+def rarity(found: Healthy | None) -> dict[str, Any]:
+    """How rare the voyages would be in health, as JSON has it."""
+    return {
+        "p_value": found.p if found else None,
+        "p_value_at_best": found.at_best if found else None,
+        "p_value_references": found.references if found else 0,
+        "p_value_score": found.score if found else None,
+    }
+
+
+def since_in_words(causes: Sequence[str]) -> list[str]:
+    """That the ship file is older than these causes or some of their numbers, and what that means."""
+    if not causes:
+        return []
+    were, them, are = ("was", "it", "it is") if len(causes) == 1 else ("were", "them", "they are")
+    return [
+        f"The ship file was calibrated when {', '.join(causes)} {were} not known, or not with all numbers: "
+        f"what healthy voyages of this ship show of {them} is not in it, and {are} named less surely. "
+        "Calibrate again."
+    ]
 
 
 def healthy_in_words(result: dict[str, Any]) -> str:

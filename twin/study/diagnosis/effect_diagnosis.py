@@ -13,8 +13,7 @@ from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
-from twin.study.diagnosis.against_healthy import healthy_in_words
-from twin.study.diagnosis.altered import sized
+from twin.study.diagnosis.against_healthy import healthy_in_words, rarity
 from twin.study.diagnosis.answer import SearchAnswer, answer
 from twin.study.diagnosis.assemble import assemble, unjudged_because
 from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of_unknown
@@ -37,7 +36,7 @@ from twin.study.diagnosis.verdict import (
     typical_force,
 )
 from twin.study.estimation.start import waves_on
-from twin.study.reference.healthy import Healthy
+from twin.study.reference.nuisance import learned_since
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.jumps import jumps_on
 
@@ -94,6 +93,7 @@ def diagnose(
         "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],
         "calibrated": bool(references) or noise_model_of(ship) is not None,
+        "learned_since": [] if references else learned_since(case.model, case.catalogue),
         "data_checks": checks,
         "facts": considered.facts.as_json(),
     }
@@ -113,7 +113,7 @@ def _decided(told: SearchAnswer) -> dict[str, Any]:
         "further": list(told.further),
         "more": decision.more,
         "one_of": list(facts.one_of) if decision.reason in ("one_of", "weather") else [],
-        **_healthy(healthy),
+        **rarity(healthy),
         "probabilities": {"nothing_missing": nothing, "unknown": of_unknown(facts, decision)},
     }
 
@@ -166,23 +166,13 @@ def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _healthy(found: Healthy | None) -> dict[str, Any]:
-    """How rare the voyages would be in health, as JSON has it."""
-    return {
-        "p_value": found.p if found else None,
-        "p_value_at_best": found.at_best if found else None,
-        "p_value_references": found.references if found else 0,
-        "p_value_score": found.score if found else None,
-    }
-
-
 def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any]:
     """One effect with its numbers; empty where no set that holds it was relinearised."""
     case, weighed, found, considered = told.case, told.weighed, told.found, told.considered
     if (chosen := _own_set(told, name)) is None:
         return {}
     best = found[chosen]
-    numbers = parameters(case, sized(case, best), name)
+    numbers = parameters(case, best.posterior, name)
     return {
         "effect": name,
         "belongs_to": case.catalogue[name].belongs_to,
@@ -248,7 +238,7 @@ def _weather(told: SearchAnswer, name: str, probability: float) -> dict[str, Any
             "stream": [],
         }
     return out | {
-        "parameters": parameters(case, sized(case, best), name),
+        "parameters": parameters(case, best.posterior, name),
         "typical_force": typical_force(case, best, name),
         "stream": set_and_rate(case, best, name),
     }

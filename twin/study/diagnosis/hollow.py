@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.study.diagnosis.altered import floats
+from twin.study.diagnosis.afloat import floats
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.refine import Found
 from twin.study.estimation.columns import Unknown

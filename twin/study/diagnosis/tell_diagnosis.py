@@ -7,7 +7,7 @@ from twin.num import as_given, clock, num, percent, readable
 from twin.recording.checks import whose
 from twin.study.diagnosis import reasons
 from twin.study.diagnosis import sentences as say
-from twin.study.diagnosis.against_healthy import healthy_in_words
+from twin.study.diagnosis.against_healthy import healthy_in_words, since_in_words
 from twin.study.diagnosis.force_in_words import force as in_words
 from twin.study.diagnosis.overtime import changes
 from twin.study.diagnosis.set_and_rate import stream_in_words
@@ -37,6 +37,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
         "as on random ships with such an answer)"
     )
     lines += [healthy_in_words(result)] * result["calibrated"]
+    lines += since_in_words(result["learned_since"])
     if result["next_manoeuvre"]:
         lines += ["", to_sail(result["next_manoeuvre"])]
     if result["not_judged"]:

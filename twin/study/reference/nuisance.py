@@ -222,6 +222,14 @@ def _from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     return Nuisance(unknowns, information, information @ mean, stored.get("daily", {}))
 
 
+def learned_since(model: Model, catalogue: dict[str, type[Effect]]) -> list[str]:
+    """Causes that the calibration in the ship's file knew not, or not with all their numbers: it was of an
+    earlier version, or before a package brought them. None where the ship was never calibrated."""
+    known = set(model.ship.notes.get("structural", {}).get("labels", ()))
+    by_fit = [u for u in lasting(model, catalogue) if not catalogue[u.owner].kinematic]
+    return list(dict.fromkeys(u.owner for u in by_fit if known and u.label not in known))
+
+
 def temper_of(normal: Normal, unknowns: Sequence[Unknown]) -> float:
     """How much less the innovations tell than they would if they were white: variance of the segments' scores
     over their information, where the unknowns together explain the voyages best.

@@ -19,7 +19,6 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.progress import Progress, silent
-from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.as_filed import in_file, model_with
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.case import Case
@@ -168,7 +167,7 @@ def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
 
 def _numbers(case: Case, found: Found) -> list[Number]:
     """Every number of the hypothesis of which the recordings tell, as the diagnosis has it."""
-    told: Posterior = sized(case, found)
+    told = found.posterior
     said = {
         f"{name}.{p['name']}": p for name in found.hypothesis.effects for p in parameters(case, told, name)
     }
