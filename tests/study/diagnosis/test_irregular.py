@@ -8,7 +8,7 @@ import pytest
 from twin.study.diagnosis.irregular import comes_and_goes, log_bayes_factor
 from twin.study.diagnosis.refine import refine
 
-CLEARLY = 10.0  # log Bayes factor
+CLEARLY = 5.0  # log Bayes factor
 
 
 def found(case, *chosen):

@@ -4,8 +4,9 @@ Ice that is met now and then takes speed as fouling does, and a propeller that d
 Where a force comes and goes faster than a ship answers, its mean looks like a cause that lasts, and the rest
 like a rough day. So the two are held against each other: the cause and a fast part of the noise model, as
 these voyages show it (`settle` in case.py) or as on the reference voyages; and the latter, with as much of
-the cause's own force beside it, there or not from moment to moment. On a rough day the noise does not follow
-the force. (What pulls or pushes from outside need not be steady: of a tow nothing is asked.)"""
+the cause's own force beside it, there or not from moment to moment; each with the slow part of the noise as
+the hypothesis has it or as on the references. On a rough day the noise does not follow the force. (What pulls
+or pushes from outside need not be steady: of a tow nothing is asked.)"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,6 +21,7 @@ from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import accelerations
 from twin.study.reference.evidence import posterior
 
+USUAL = "usual"  # scenario of a day as the references were
 # of the mean force, that may come and go [1]: a grid by half octaves, the likeliest counts; not fitted
 SHARES = (0.5, 0.7, 1.0, 1.4)
 
@@ -43,14 +45,14 @@ def log_bayes_factor(case: Case, found: Found) -> float | None:
     forces = [_of(case, own, line) for line in lines]
     if not any(map(np.any, forces)):
         return None
-    (rough,) = case.scenarios([found.hypothesis.scenario], found.doubt)
-    calm = replace(rough, white=case.white)
+    rough = case.scenarios(list(dict.fromkeys((USUAL, found.hypothesis.scenario))), found.doubt)
+    calm = [replace(each, white=case.white) for each in rough]
 
     def evidence(share: float, noise_models: Sequence[NoiseModel]) -> float:
         fitful = [replace(line, fitful=share * f) for line, f in zip(lines, forces, strict=True)]
         return max(posterior(r, chosen).log_evidence for r in case.reduced(fitful, noise_models, at))
 
-    return max(evidence(share, (calm,)) for share in SHARES) - evidence(0.0, (rough, calm))
+    return max(evidence(share, calm) for share in SHARES) - evidence(0.0, [*rough, *calm])
 
 
 def _of(case: Case, own: set[str], line: Linear) -> np.ndarray:
