@@ -8,9 +8,12 @@ import re
 import tomllib
 from typing import Any
 
+import tomlkit
+
 from twin.recording.checks.check_result import Check
+from twin.recording.checks.wind_triangle import WINDS
 from twin.recording.map_toml import toml
-from twin.recording.mapping import NAMES
+from twin.recording.mapping import FRAMED, GROUND, NAMES
 
 SURGE, SWAY, HEADING = "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"
 SPEEDS = (SURGE, SWAY)
@@ -43,6 +46,8 @@ WORDS: dict[str, tuple[str, ...]] = {  # what a fix calls channels without their
     "the one to the east": (SWAY,),
     "the one to the north": (SURGE,),
     "them": ("north_m", "east_m"),
+    "both speeds": tuple(speed for speed, _ in WINDS),
+    "both directions": tuple(direction for _, direction in WINDS),
 }
 ASSIGNED = re.compile(
     r'(sign|unit|offset|frame|direction|despike|late_s|deviation) = ("[^"]*"|\[[^\]]*\]|true|-?[\d.]+)'
@@ -53,7 +58,8 @@ VERDICT = re.compile(
     r"^# cannot be imported by it yet: .*\n", re.MULTILINE
 )  # no longer true of what is edited
 SWAP = "swap their columns"
-Edit = dict[str, Any]  # channel ("time" for [time]) -> keys to write; "swap": two channels
+# channel ("time" for [time]) -> keys to write; "swap": pairs of channels that exchange their columns
+Edit = dict[str, Any]
 
 
 def channels_of(check: Check, columns: Any) -> list[str]:
@@ -83,20 +89,25 @@ def _edit(check: Check, fix: str, columns: list[str]) -> Edit:
         if found := TIME.search(part):
             edit["time"] = {found[1]: _value(found[2])}
             continue
-        if SWAP in part:
-            edit["swap"] = _swapped(check, columns)
+        if SWAP in part and (pairs := _swapped(check, columns)):
+            edit["swap"] = pairs
         said = {key: _value(text) for key, text in ASSIGNED.findall(part)}
         for channel in _meant(check, part, columns) if said else ():
             edit[channel] = {**edit.get(channel, {}), **said}
     return edit
 
 
-def _swapped(check: Check, columns: list[str]) -> list[str]:
+def _swapped(check: Check, columns: list[str]) -> list[list[str]]:
+    """The pairs of channels whose columns stand in each other's place; none where the check names none."""
+    if check.name == "wind":
+        return [list(pair) for pair in zip(*WINDS, strict=True)]
+    if check.name != "velocity_frame":
+        return []
     if "latitude and longitude are exchanged" in check.text:
-        return ["latitude_deg", "longitude_deg"]
+        return [["latitude_deg", "longitude_deg"]]
     if "north and east are swapped" in check.text:
-        return ["latitude_deg", "longitude_deg"] if "latitude_deg" in columns else ["north_m", "east_m"]
-    return list(SPEEDS)
+        return [["latitude_deg", "longitude_deg"] if "latitude_deg" in columns else ["north_m", "east_m"]]
+    return [list(SPEEDS)]
 
 
 def _meant(check: Check, part: str, columns: list[str]) -> tuple[str, ...]:
@@ -120,22 +131,40 @@ def _value(text: str) -> Any:
 
 def edited(text: str, edit: Edit) -> str:
     """The map with an edit made; what a check asks for counts from what the map says already. A channel that
-    the map lacks is taken from the column that the edit names."""
-    data = tomllib.loads(text)
-    text = VERDICT.sub("", text)
-    if "swap" in edit:
-        one, other = edit["swap"]
-        data["columns"][one], data["columns"][other] = data["columns"][other], data["columns"][one]
-        text = _line(_line(text, one, data["columns"][one]), other, data["columns"][other])
+    the map lacks is taken from the column that the edit names.
+
+    ValueError where the map has no line for a channel, or says all of it already."""
+    document = tomlkit.parse(VERDICT.sub("", text))
+    columns = document.setdefault("columns", {})
+    for pair in edit.get("swap", ()):
+        one, other = (_line_of(channel, columns) for channel in pair)
+        columns[one], columns[other] = (_item(columns[name].unwrap()) for name in (other, one))
     for channel, keys in edit.items():
         if channel == "time":
-            for key, value in keys.items():
-                text = _time(text, key, value)
-        elif channel != "swap" and channel in data.get("columns", {}):
-            text = _line(text, channel, _with(data["columns"][channel], keys))
-        elif channel in NAMES and "column" in keys:
-            text = text.replace("[columns]\n", f"[columns]\n{channel} = {toml(dict(keys))}\n", 1)
-    return text
+            document.setdefault("time", {}).update(keys)
+        elif channel in NAMES and channel not in columns and "column" in keys:
+            columns[channel] = _item(dict(keys))
+        elif channel != "swap":
+            name = _line_of(channel, columns)
+            columns[name] = _item(_with(columns[name].unwrap(), keys))
+    if document.unwrap() == tomllib.loads(text):
+        raise ValueError("the map says this already")
+    return tomlkit.dumps(document)
+
+
+def _line_of(channel: str, columns: Any) -> str:
+    """The line of [columns] that fills a channel; a velocity may stand there as one over ground, as the
+    checks say in brackets."""
+    names = (channel, *(pair[FRAMED.index(channel)] for pair in GROUND.values() if channel in FRAMED))
+    found = next((name for name in names if name in columns), None)
+    if found is None:
+        raise ValueError(f"the map has no line for {channel}")
+    return found
+
+
+def _item(entry: Any) -> Any:
+    """An entry of [columns] as tomlkit keeps it, on one line."""
+    return tomlkit.value(toml(entry))
 
 
 def _with(entry: Any, keys: dict[str, Any]) -> dict[str, Any]:
@@ -146,17 +175,3 @@ def _with(entry: Any, keys: dict[str, Any]) -> dict[str, Any]:
     out |= {k: v for k, v in keys.items() if k not in ("sign", "offset")}
     out["sign"], out["offset"] = sign * out.get("sign", 1), offset
     return {k: v for k, v in out.items() if not (k == "sign" and v == 1) and not (k == "offset" and v == 0.0)}
-
-
-def _line(text: str, channel: str, entry: Any) -> str:
-    """The text with one line of [columns] written anew; a note behind it stays."""
-    pattern = re.compile(rf"^{re.escape(channel)}\s*=.*?(\s+# .*)?$", re.MULTILINE)
-    return pattern.sub(lambda m: f"{channel} = {toml(entry)}{m[1] or ''}", text, count=1)
-
-
-def _time(text: str, key: str, value: Any) -> str:
-    entry = f"{key} = {toml(value)}"
-    pattern = re.compile(rf"(^\[time\]\n(?:(?!\[).*\n)*?){key}\s*=.*$", re.MULTILINE)
-    if pattern.search(text):
-        return pattern.sub(lambda m: m[1] + entry, text, count=1)
-    return text.replace("[time]\n", f"[time]\n{entry}\n", 1)
