@@ -107,10 +107,16 @@ def run(args: argparse.Namespace) -> int:
     there. ThresholdError: the residual is not worth having."""
     ship = load(args.ship)
     output = Path(args.output)
+    manifest = output.with_suffix(".json")
     if output.suffix != ".onnx":
         raise TwinError(f"-o {output}: the name must end with .onnx (the manifest goes beside it as .json).")
     if not output.parent.is_dir():
         raise TwinError(f"-o {output}: there is no folder {output.parent}. Make it first.")
+    if manifest.exists() and not output.exists():
+        raise TwinError(
+            f"-o {output}: its manifest would take the place of {manifest}, which is there. "
+            "Choose another name."
+        )
     try:
         result = learn(
             ship, read_all(args.voyages, ship, tell), settings_of(args), args.seeds, output, args.force
@@ -125,7 +131,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"wrote {args.report}", file=page)
     if not result["written"]:
         raise ThresholdError(f"{result['verdict']}; {output} was not written. Give more voyages, or --force.")
-    print(f"{result['verdict']}\nwrote {output} and {output.with_suffix('.json')}", file=page)
+    print(f"{result['verdict']}\nwrote {output} and {manifest}", file=page)
     print(
         f'next: put residual.file = "{output}" into twin.toml, then twin run (or twin replay VOYAGE.mcap)',
         file=page,

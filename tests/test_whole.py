@@ -73,6 +73,7 @@ def test_where_it_cannot_be_written_nothing_is_left_behind(tmp_path, where):
         ["add", "Wind", "--ship", "mine.toml", "--voyage", "v.mcap", "-o", "mine.toml"],
         ["remove", "Wind", "--ship", "mine.toml", "-o", "./mine.toml"],
         ["calibrate", "v.mcap", "--ship", "mine.toml", "-o", "mine.toml"],
+        ["tube", "v.mcap", "--ship", "mine.toml", "-o", "mine.toml"],
     ],
     ids=lambda words: words[0],
 )
@@ -92,3 +93,47 @@ def test_force_writes_over_it(tmp_path, monkeypatch):
     (tmp_path / "mine.toml").write_bytes(SHIP.read_bytes())
     assert main(command_lines.init("Alma", "-o", "mine.toml", "--force")) == 0
     assert b"Alma" in (tmp_path / "mine.toml").read_bytes()
+
+
+READ_TOO = [
+    (["instruments", "v.mcap", "--ship", "mine.toml", "-o", "v.mcap"], "-o v.mcap"),
+    (["instruments", "v.mcap", "--ship", "mine.toml", "-o", "mine.toml"], "-o mine.toml"),
+    (["instruments", "v.mcap", "--map", "m.toml", "-o", "m.toml"], "-o m.toml"),
+    (["import", "v.mcap", "-o", "v.mcap"], "-o v.mcap"),
+    (["import", "v.mcap", "--map", "m.toml", "-o", "w.mcap", "--report", "m.toml"], "--report m.toml"),
+    (["compare", "v.mcap", "--ship", "mine.toml", "--json", "v.mcap"], "--json v.mcap"),
+    (
+        ["compare", "v.mcap", "--ship", "mine.toml", "--residual", "r.onnx", "--json", "r.json"],
+        "--json r.json",
+    ),
+    (
+        ["diagnose", "w.mcap", "--ship", "mine.toml", "--reference", "v.mcap", "--report", "v.mcap"],
+        "--report v",
+    ),
+    (["calibrate", "v.mcap", "--ship", "mine.toml", "--force", "-o", "v.mcap"], "-o v.mcap"),
+    (["tube", "v.mcap", "--ship", "mine.toml", "--config", "m.toml", "-o", "m.toml"], "-o m.toml"),
+    (["history", "mine.toml", "--json", "mine.toml"], "--json mine.toml"),
+    (["replay", "v.mcap", "-o", "./v.mcap"], "-o ./v.mcap"),
+    (["train", "v.mcap", "--ship", "mine.toml", "-o", "r.onnx", "--json", "r.json"], "--json r.json"),
+    (["compare", "v.mcap", "--ship", "mine.toml", "--json", "new", "--report", "./new"], "--report ./new"),
+    (["add", "Wind", "--ship", "kvlcc2", "--voyage", "w", "-o", "new", "--json", "new"], "--json new"),
+]
+
+
+@pytest.mark.parametrize(("words", "said"), READ_TOO, ids=lambda x: x[0] if isinstance(x, list) else x)
+def test_what_is_read_or_written_already_is_not_written_over(words, said, tmp_path, monkeypatch, capsys):
+    """Test: an output is a voyage, the ship, a map, a learned residual's manifest, or another output. Expected: exit
+    code 5 and one line before any work; every file as it was."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("v.mcap", "mine.toml", "m.toml", "r.onnx", "r.json"):
+        (tmp_path / name).write_text(name)
+    assert main(words) == 5
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and said in error and "Choose another name" in error
+    assert {p.name: p.read_text() for p in tmp_path.iterdir()} == {
+        name: name for name in ("v.mcap", "mine.toml", "m.toml", "r.onnx", "r.json")
+    }
+
+
+def test_both_answers_may_go_to_one_device():
+    whole.promised(Namespace(json=os.devnull, report=os.devnull, ship="kvlcc2", output=None))

@@ -4,7 +4,7 @@ import argparse
 import errno
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -13,18 +13,59 @@ from twin.errors import SettingsError, TwinError
 
 # in what was asked: option
 OUTPUTS = {"output": "-o", "json": "--json", "report": "--report", "markdown": "--markdown", "page": ""}
+# in what was asked: files that are read
+READ = (
+    *("voyages", "voyage", "held_out", "reference", "file", "log"),
+    *("ship", "map", "residual", "config", "actuators", "fleet"),
+)
 ASIDE = r"\.{name}\.[0-9a-f]{{12}}"  # pattern of the name that a file has while it is written
 
 
 def promised(args: argparse.Namespace) -> None:
     """Before any work is done: TwinError (exit code 1) when a file that was asked for could not be written
-    where it is to be."""
+    where it is to be; SettingsError when it is one that is read, or that another output is written to."""
+    told, outputs = vars(args), dict[str, str]()
     for name, option in OUTPUTS.items():
-        path = Path(getattr(args, name, None) or "-")
-        if path == Path("-"):
+        path = told.get(name) or "-"
+        if path == "-":
             continue
-        if why := _not_writable(path):
-            raise _cannot(path, why, option or args.page_option)
+        option = option or args.page_option
+        if why := _not_writable(Path(path)):
+            raise _cannot(Path(path), why, option)
+        if os.path.isfile(path) or not os.path.exists(path):  # what a device was told is not lost
+            _alone(option, path, outputs, told)
+            outputs[option] = path
+
+
+def _alone(option: str, path: str, outputs: Mapping[str, str], told: Mapping[str, Any]) -> None:
+    """SettingsError when the file is that of another output or one that is read. A better ship file may take
+    the place of the ship file, where that is forced."""
+    for other, written in outputs.items():
+        if _shared(path, written):
+            raise SettingsError(f"{option} {path}: {other} would be written there, too. Choose another name.")
+    for name in READ:
+        files = told.get(name) or ()
+        better = (option, name) == ("-o", "ship") and "force" in told
+        for kept in [files] if isinstance(files, str) else files:
+            if os.path.exists(kept) and _shared(path, kept) and not (better and told["force"]):
+                forced = ", or write over it with --force" * better
+                raise SettingsError(
+                    f"{option} {path}: is a file that is read and would be lost. Choose another name{forced}."
+                )
+
+
+def _shared(one: str, other: str) -> bool:
+    """Whether two names are of one file, or of one that goes with it: the manifest of a learned residual."""
+    return any(_same(a, b) for a in _together(one) for b in _together(other))
+
+
+def _same(one: str, other: str) -> bool:
+    there = os.path.exists(one) and os.path.exists(other)
+    return os.path.samefile(one, other) if there else os.path.realpath(one) == os.path.realpath(other)
+
+
+def _together(path: str) -> list[str]:
+    return [path, path.removesuffix(".onnx") + ".json"] if path.endswith(".onnx") else [path]
 
 
 def _not_writable(path: Path) -> str:
@@ -39,23 +80,14 @@ def _not_writable(path: Path) -> str:
     return "" if os.access(path.parent, os.W_OK) else "its folder may not be written to"
 
 
-def not_over(output: str, kept: Sequence[str], force: bool) -> None:
-    """Before any work is done: SettingsError when `output` is there and is one of the files that are to be
-    kept, unless forced: what a calibration found and what people noted in a ship file would be gone."""
-    for path in kept if not force and os.path.exists(output) else ():
-        if os.path.exists(path) and os.path.samefile(path, output):
-            raise SettingsError(
-                f"-o {output}: is there already and would be lost. Choose another name, or "
-                "write over it with --force."
-            )
-
-
-def not_onto(output: str, sources: Sequence[str], what: str) -> None:
-    """Before any work is done: SettingsError when `output` is one of the files that are read; `what` it
-    is."""
-    for path in sources if os.path.exists(output) else ():
-        if os.path.exists(path) and os.path.samefile(path, output):
-            raise SettingsError(f"-o {output}: is {what}. Choose another name.")
+def not_over(output: str, force: bool) -> None:
+    """Before any work is done: SettingsError when `output` is there, unless forced: what a calibration found
+    and what people noted in a ship file would be gone."""
+    if os.path.exists(output) and not force:
+        raise SettingsError(
+            f"-o {output}: is there already and would be lost. Choose another name, or write over it with "
+            "--force."
+        )
 
 
 def _cannot(path: Path, why: str | None, option: str) -> TwinError:

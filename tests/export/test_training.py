@@ -278,3 +278,11 @@ def test_little_data_is_taught_in_smaller_batches_and_not_in_fewer_steps(parts):
         many, batch = course._amount("acceleration")
         assert many == len(data["train"].samples) and batch <= FEW.batch
         assert len(list(shuffled(many, batch, 1))) >= 50
+
+
+def test_a_file_that_is_no_manifest_is_not_written_over_by_one(tmp_path, capsys):
+    """Test: monday.json is there, and monday.onnx is not. Expected: one line before any work; the file as it was."""
+    (tmp_path / "monday.json").write_text("mine")
+    assert main(["train", "v.mcap", "--ship", "kvlcc2", "-o", str(tmp_path / "monday.onnx")]) == 1
+    assert "monday.json, which is there" in capsys.readouterr().err
+    assert (tmp_path / "monday.json").read_text() == "mine"

@@ -3,7 +3,6 @@
 import argparse
 import sys
 
-from twin import whole
 from twin.api.update import check_proof, of_sailed
 from twin.commands import arguments
 from twin.commands.next_command import add_typed
@@ -39,11 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    whole.not_over(args.output, [args.ship], args.force)
     check_proof(args.held_out, args.cross_validated)
     ship, paths = load(args.ship), args.voyage
     effects = [find_for(n, ship) for n in dict.fromkeys(args.effects)]
-    whole.not_onto(args.output, [*paths, *args.held_out], "one of the voyages")
     every = read_all([*paths, *args.held_out], ship, progress)
     fit, kept, judged = every[: len(paths)], every[len(paths) :], args.held_out or paths
     made = of_sailed(ship, effects, fit, kept, args.cross_validated, args.force, progress)

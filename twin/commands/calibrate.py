@@ -4,7 +4,6 @@ unexplained."""
 import argparse
 import sys
 
-from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands import arguments
 from twin.commands.verb_output import files, lines_to, progress, typed, wrote
@@ -37,7 +36,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    whole.not_over(args.output, [args.ship, *args.voyages, *args.held_out], args.force)
     ship = load(args.ship)
     every = read_all(args.voyages, ship, progress)
     found = of_sailed(ship, every, read_all(args.held_out, ship, progress), progress)

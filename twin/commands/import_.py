@@ -36,7 +36,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    whole.not_onto(args.output or "", args.file, "the file that is read")
     progress(f"reading {' '.join(args.file)}")
     if args.suggest_map:
         text, confirmed = suggest_map(args.file, sources=args.source), after_map(args.file, args.output)

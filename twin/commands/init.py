@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    whole.not_over(args.output, [args.output], args.force)
+    whole.not_over(args.output, args.force)
     names = [option.replace("-", "_") for option, *_ in OPTIONS]
     known = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
     parts = load_actuators(args.actuators) if args.actuators else ()

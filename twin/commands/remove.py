@@ -19,7 +19,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    whole.not_over(args.output, [args.ship], args.force)
     ship = remove(load(args.ship), args.effects)
     save(ship, args.output, args.ship)
     left = [type(e).__name__ for e in ship.effects]

@@ -33,7 +33,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     settings = config.load(args.config)
     settings = settings.but("ship.file", args.ship) if args.ship else settings
-    whole.not_onto(args.output or "", [args.log], "the log itself")
     if args.to_bus:
         settings = settings.but("bus.listen", args.listen) if args.listen else settings
         ending.ends_the_process(lambda: guarded(lambda: _sail(args, settings)))

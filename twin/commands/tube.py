@@ -32,7 +32,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    whole.not_over(args.output, [args.ship, *args.voyages], args.force)
     ship = load(args.ship)
     voyages = [read_voyage(path) for path in args.voyages]
     done = tube(ship, voyages, settings=args.config, progress=progress)

@@ -39,7 +39,7 @@ class Ship(ShipNumbers):
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the ship file, whole or not at all; SettingsError when it would write over a file and `force`
         is not set."""
-        whole.not_over(str(path), [str(path)], force)
+        whole.not_over(str(path), force)
         ship_text.save(self, path)
 
 
