@@ -147,6 +147,7 @@ def _verb(argv: list[str]) -> int:
         if name in argv[:1]:
             _module(name).add_arguments(sub)
     args = parser.parse_args(argv)
+    args.typed = argv
     whole.promised(args)
     return _module(args.verb).run(args)  # type: ignore[no-any-return]
 

@@ -5,8 +5,8 @@ import sys
 
 from twin.api.update import check_proof, of_sailed
 from twin.commands import arguments
-from twin.commands.next_command import add_typed
-from twin.commands.verb_output import files, lines_to, progress, typed, with_request, wrote
+from twin.commands.typed_again import with_request
+from twin.commands.verb_output import files, lines_to, progress, typed, wrote
 from twin.errors import ThresholdError
 from twin.physics.effects import find_for
 from twin.physics.ship import load
@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     every = read_all([*paths, *args.held_out], ship, progress)
     fit, kept, judged = every[: len(paths)], every[len(paths) :], args.held_out or paths
     made = of_sailed(ship, effects, fit, kept, args.cross_validated, args.force, progress)
-    found = with_request(made, add_typed(args), ship=args.ship, voyages=paths, judged=judged)
+    found = with_request(made, args, ship=args.ship, voyages=paths, judged=judged)
     found = found.with_keys(output=args.output if made.accepted else None)
     print("\n".join(found.text()), file=(page := lines_to(args) if made.accepted else sys.stderr))
     if made.accepted:

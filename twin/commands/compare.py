@@ -5,7 +5,8 @@ import argparse
 from twin.api.comparison import of_sailed
 from twin.commands import arguments
 from twin.commands.next_command import after_compare
-from twin.commands.verb_output import answer, lines_to, progress, typed, with_request
+from twin.commands.typed_again import with_request
+from twin.commands.verb_output import answer, lines_to, progress
 from twin.errors import ThresholdError
 from twin.physics.ship import load
 from twin.study.prediction.openloop import HORIZONS_S
@@ -41,8 +42,7 @@ def run(args: argparse.Namespace) -> int:
     voyages = read_all(args.voyages, ship, progress)
     progress("predicting")
     found = of_sailed(ship, voyages, args.horizon or HORIZONS_S, args.residual)
-    command = typed("compare", *args.voyages, "--ship", args.ship)
-    answer(args, with_request(found, command, ship=args.ship, voyages=args.voyages))
+    answer(args, with_request(found, args, ship=args.ship, voyages=args.voyages))
     print(f"\nnext: {after_compare(args.voyages, args.ship, found.data)}", file=lines_to(args))
     if unmet := passed(found.to_dict(), args.fail_above):
         raise ThresholdError(f"{'; '.join(unmet)}.")

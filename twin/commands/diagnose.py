@@ -6,7 +6,8 @@ import argparse
 from twin.api.diagnosis import diagnose
 from twin.commands import arguments
 from twin.commands.next_command import after_diagnose
-from twin.commands.verb_output import answer, lines_to, progress, typed
+from twin.commands.typed_again import command_of
+from twin.commands.verb_output import answer, lines_to, progress
 from twin.live.learning.residual import load as load_residual
 from twin.physics.ship import load
 from twin.recording.read import read_voyage
@@ -40,11 +41,11 @@ def run(args: argparse.Namespace) -> int:
         load_residual(args.residual, ship)  # one that must not be used is refused before the work
     voyages, reference = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
     found = diagnose(ship, voyages, reference=reference, progress=progress)
-    command = typed("diagnose", *args.voyages, "--ship", args.ship)
     files = {"ship": args.ship, "voyages": args.voyages}
-    found = found.with_keys(command=command, verdict_text=found.sentence, files=files)
+    found = found.with_keys(command=command_of(args), verdict_text=found.sentence, files=files)
     if args.identifiability or args.residual:
         found = found.with_identifiability(args.residual or None)
     answer(args, found)
-    print(f"\nnext: {after_diagnose(args.voyages, args.ship, found.data)}", file=lines_to(args))
+    then = after_diagnose(args.voyages, args.ship, found.data, args.reference)
+    print(f"\nnext: {then}", file=lines_to(args))
     return 0

@@ -8,7 +8,8 @@ from twin import whole
 from twin.api.instruments import FRAMES, InstrumentCheck, instruments
 from twin.commands import arguments
 from twin.commands.next_command import after_instruments
-from twin.commands.verb_output import lines_to, progress, typed, with_request, wrote
+from twin.commands.typed_again import with_request
+from twin.commands.verb_output import lines_to, progress, wrote
 from twin.physics.ship import Ship, load
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
@@ -45,8 +46,7 @@ def run(args: argparse.Namespace) -> int:
         _write(args, ship, done)
         print("", wrote(args.output), *done.ambiguous(), sep="\n", file=page)
     if args.json:
-        command = typed("instruments", *args.voyages, *(["--ship", args.ship] if ship else []))
-        answer = with_request(done, command, ship=args.ship, voyages=args.voyages)
+        answer = with_request(done, args, ship=args.ship, voyages=args.voyages)
         whole.write_json(answer.to_dict(), args.json)
     print("\nnext:", after_instruments(args, bool(done.faults), bool(done.distinct)), file=page)
     return 3 if nothing_to_write else 0

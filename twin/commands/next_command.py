@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from twin.commands.typed_again import given
 from twin.commands.verb_output import typed
 from twin.physics.ship import load
 
@@ -27,7 +28,9 @@ def after_instruments(args: argparse.Namespace, seen: bool, distinct: bool) -> s
     """A comparison, where a ship file was written or no fault seen; else what may write one."""
     if not seen or (distinct and args.ship and args.output):
         return typed("compare", *args.voyages, "--ship", (seen and args.output) or args.ship or "SHIP.toml")
-    to = ["--ship", args.ship or "SHIP.toml", "-o", (args.ship and args.output) or "corrected.toml"]
+    by = [*given("--map", args.map), *(w for name in args.source for w in given("--source", name))]
+    by += given("--velocity-by", args.velocity_by)
+    to = [*by, "--ship", args.ship or "SHIP.toml", "-o", (args.ship and args.output) or "corrected.toml"]
     return typed("instruments", *args.voyages, *([] if distinct else ["OTHER-DAY.mcap"]), *to)
 
 
@@ -38,23 +41,20 @@ def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) 
     return fit + typed("diagnose", *voyages, "--ship", by, "--report", "diagnose.html")
 
 
-def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
+def after_diagnose(
+    voyages: Sequence[str], ship: str, result: Mapping[str, Any], reference: Sequence[str] = ()
+) -> str:
     """What to sail, to ask together or to add; a calibration before all, where the ship never had one."""
     if not result["calibrated"]:
         return after_import(voyages[0], ship)
     of, then = ("--ship", ship), result["next_manoeuvre"]
+    again = (*of, *given("--reference", *reference))
     sail = then and f"sail {then['manoeuvre']}, then twin diagnose with that voyage too"
     now = "" if sail else typed("compare", *voyages, *of, "--report", "compare.html")
     if lasting := result["answer"]["lasting"]:
         now = typed("add", *lasting, *of, "--voyage", *voyages, "-o", "better.toml")
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
-        now = f"{typed('diagnose', *voyages, 'OTHER-DAY.mcap', *of)}: voyages together tell more than one"
+        now = f"{typed('diagnose', *voyages, 'OTHER-DAY.mcap', *again)}: voyages together tell more than one"
     elif result["verdict"] == "nothing_missing":
-        now = f"{typed('diagnose', 'OTHER-DAY.mcap', *of)}; what sailed so is good for twin calibrate, too"
+        now = f"{typed('diagnose', 'OTHER-DAY.mcap', *again)}; what sailed so is good for twin calibrate, too"
     return "; or now: ".join(filter(None, (sail, now)))
-
-
-def add_typed(args: argparse.Namespace) -> str:
-    """What was typed, for the page."""
-    by = ["--held-out", *args.held_out] if args.held_out else ["--cross-validated"] * args.cross_validated
-    return typed("add", *args.effects, "--ship", args.ship, "--voyage", *args.voyage, *by, "-o", args.output)

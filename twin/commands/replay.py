@@ -5,6 +5,7 @@ import argparse
 from twin import whole
 from twin.cli import guarded
 from twin.commands import arguments
+from twin.commands.typed_again import command_of
 from twin.commands.verb_output import lines_to, typed
 from twin.errors import UsageError
 from twin.live import ending
@@ -52,7 +53,7 @@ def _sail(args: argparse.Namespace, settings: config.Settings) -> int:
     if record:
         from twin.report.replay_page import replay_page
 
-        whole.write(args.report, replay_page(found, record), "--report")
+        whole.write(args.report, replay_page(found, record, command_of(args)), "--report")
     compare = typed("compare", args.output or args.log, "--ship", settings["ship.file"])
     print("\n".join([*summary_lines(found), f"next: {compare}"]), file=lines_to(args))
     return 0

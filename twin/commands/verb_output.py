@@ -4,7 +4,7 @@ import argparse
 import shlex
 import sys
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TextIO
 
 from twin import whole
 from twin.api.result import Result
@@ -24,11 +24,6 @@ def lines_to(args: argparse.Namespace) -> TextIO:
 def typed(*words: str) -> str:
     """A command of the twin as a shell takes it: each word is one, whatever stands in a file's name."""
     return shlex.join(["twin", *words])
-
-
-def with_request(found: Result, command: str, **files: Any) -> Result:
-    """The result with what was typed and of which files it is."""
-    return found.with_keys(command=command, files=files)
 
 
 def wrote(path: str) -> str:

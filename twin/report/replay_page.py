@@ -1,7 +1,6 @@
 """The page of `twin replay`: estimate against measurement, predictions with their tube, health over time."""
 
 import hashlib
-import shlex
 from array import array
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,12 +29,12 @@ DRAWN_S = 60.0  # the prediction whose course is drawn beside the measurement: t
 Columns = Mapping[str, np.ndarray]
 
 
-def replay_page(summary: Summary, record: ReplayRecord) -> str:
-    """One self-contained HTML page."""
-    return html(content(summary, record), (*PLOTS, "replay.js"))
+def replay_page(summary: Summary, record: ReplayRecord, command: str) -> str:
+    """One self-contained HTML page; `command`: what was typed."""
+    return html(content(summary, record, command), (*PLOTS, "replay.js"))
 
 
-def content(summary: Summary, record: ReplayRecord) -> dict[str, Any]:
+def content(summary: Summary, record: ReplayRecord, command: str) -> dict[str, Any]:
     """Everything the page shows, as JSON."""
     start_s = float(record.moments.columns["time_s"][0])
     now = _columns(record.moments, start_s)
@@ -46,7 +45,6 @@ def content(summary: Summary, record: ReplayRecord) -> dict[str, Any]:
     if drawn is not None:
         lines.append({"key": "ahead", "colour": "before", "word": f"predicted {as_given(drawn)} s before"})
     ship_file = record.provenance["ship_file"]
-    command = f"twin replay {shlex.quote(summary.log)} --ship {shlex.quote(ship_file)}"
     result = summary.as_json() | {"command": command, "files": {"ship": ship_file}}
     return plain(
         {
