@@ -39,4 +39,5 @@ def value(v: Any) -> str:
 
     if isinstance(v, list | tuple):
         return "[" + ", ".join(value(x) for x in v) + "]"
-    return json.dumps(v, ensure_ascii=False) if isinstance(v, str | bool) else repr(v)
+    said = json.dumps(v, ensure_ascii=False) if isinstance(v, str | bool) else repr(v)
+    return said.replace("\x7f", "\\u007f")

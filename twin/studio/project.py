@@ -1,9 +1,7 @@
 """A project: one folder of plain files (logs, maps, ship files), the jobs done on them, and their tags."""
 
-import json
 import os
 import re
-import shutil
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,11 +9,14 @@ from typing import Any
 
 from twin import whole
 from twin.errors import SettingsError, UsageError
+from twin.recording.map_toml import toml
 
 SETTINGS = "project.toml"  # the only file that the command line does not read: which voyage is kept for what
 JOBS = "jobs"
 TAGS = ("reference", "voyage", "held_out")
 LONGEST_NAME = 120
+NO_TEXT = re.compile("[\ud800-\udfff]")  # in a name on the disk that is not UTF-8
+ODD = re.compile(rf"[\x00-\x1f/\\:]|{NO_TEXT.pattern}")
 BUNDLED = Path(__file__).parent.parent / "voyages"
 ARRAYS = re.compile(r"\.[0-9a-f]{8}\.json$")  # what a calibration found, beside its ship file
 KINDS = (  # how a file's name ends, what it is here
@@ -37,9 +38,10 @@ class Project:
 
     def path(self, name: str) -> Path:
         """The file of that name; SettingsError when it could be any other place than this folder."""
-        odd = any(ord(c) < 32 or c in "/\\:" for c in name)
-        if not name or odd or name.startswith((".", "-")) or len(name.encode()) > LONGEST_NAME:
+        if not name or ODD.search(name) or name.startswith((".", "-")) or len(name.encode()) > LONGEST_NAME:
             raise SettingsError(f"{name[:80]!r}: is no name of a file here. Use letters, digits, - and _.")
+        if name in (SETTINGS, JOBS):
+            raise SettingsError(f"{name}: is the project's own. Choose another name.")
         path = self.folder / name
         if path.is_symlink() and path.resolve().parent != self.folder:
             raise SettingsError(f"{name}: points out of the project's folder. Copy the file into it.")
@@ -60,8 +62,10 @@ class Project:
         return path
 
     def files(self) -> Iterator[Path]:
+        """All but hidden ones, the project's own, and those whose name is no text."""
         for path in sorted(self.folder.iterdir(), key=lambda p: p.name.lower()):
-            if path.is_file() and not path.name.startswith(".") and path.name != SETTINGS:
+            own = path.name.startswith(".") or path.name == SETTINGS
+            if path.is_file() and not own and not NO_TEXT.search(path.name):
                 yield path
 
     def listing(self) -> list[dict[str, Any]]:
@@ -91,7 +95,7 @@ class Project:
         if tag not in TAGS:
             raise SettingsError(f"{tag!r}: a voyage is one of {', '.join(TAGS)}.")
         self.existing(name)
-        lines = [f"{json.dumps(k)} = {json.dumps(v)}" for k, v in sorted((self.tags() | {name: tag}).items())]
+        lines = [f"{toml(k)} = {toml(v)}" for k, v in sorted((self.tags() | {name: tag}).items())]
         head = "# What each voyage of this project is kept for: reference, voyage or held_out.\n[tags]\n"
         whole.write(self.folder / SETTINGS, head + "\n".join(lines) + "\n")
 
@@ -100,8 +104,9 @@ class Project:
         bundled = sorted(p.name for p in BUNDLED.iterdir() if p.suffix in (".toml", ".mcap", ".json"))
         taken = [name for name in bundled if not self.path(name).exists()]
         for name in taken:
-            shutil.copyfile(BUNDLED / name, self.path(name))
-        self.tag("tuesday.mcap", "held_out")
+            whole.write_bytes(self.path(name), (BUNDLED / name).read_bytes())
+        if "tuesday.mcap" in taken:
+            self.tag("tuesday.mcap", "held_out")
         return taken
 
 
