@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.errors import DataError
+from twin.num import num
 from twin.physics.effects.current import Current
 from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.model import Model
@@ -142,6 +143,15 @@ def split(legs: Sequence[TrainingLeg], block_s: float = BLOCK_S) -> dict[str, li
         for name, (a, b) in zip(PARTS, ((0, first), (first + 1, second), (second + 1, None)), strict=True):
             parts[name].append(one.part(a * block, len(one) if b is None else b * block))
     return parts
+
+
+def whole(part: str, stretches: int, horizon_s: float) -> None:
+    """DataError: a part of the data has no stretch of a free run's length [s] without a hole."""
+    if not stretches:
+        raise DataError(
+            f"{part}: no stretch of {num(horizon_s, 3)} s has its rudder and shaft recorded throughout, as a "
+            "free run of the model needs. Give more or longer voyages."
+        )
 
 
 def _borders(count: int) -> tuple[int, int]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import torch
 
 from export.batches import TrainingSamples, input_names, samples, windows, zeta_of
-from export.data import TrainingLeg
+from export.data import TrainingLeg, whole
 from export.residual_network import ResidualNetwork, names_for
 from export.settings import STAGES, Progress, Set, TrainingSettings
 from export.training_course import TrainingCourse
@@ -35,14 +35,17 @@ class Taught:
 
 
 def prepared(parts: dict[str, list[TrainingLeg]], model: Model, settings: TrainingSettings) -> dict[str, Set]:
-    """Training and validation data as tensors."""
+    """Training and validation data as tensors. DataError: a part has nothing that the loss could judge."""
     names = input_names([leg for legs in parts.values() for leg in legs])
     length_s = float(model.ship.scale("time"))
     horizon = settings.rollout_lengths * length_s
-    return {
+    data = {
         part: Set(samples(parts[part], model, names), windows(parts[part], names, horizon, 0.5 * horizon))
         for part in ("train", "validation")
     }
+    for part, one in data.items():
+        whole(part, len(one.windows) if "rollout" in STAGES[settings.loss] else len(one.samples), horizon)
+    return data
 
 
 def teach(

@@ -10,7 +10,7 @@ from typing import Any
 
 from export.data import leg, model_of, split
 from twin import whole
-from twin.errors import DataError, ThresholdError, TwinError
+from twin.errors import DataError, SettingsError, ThresholdError, TwinError
 from twin.num import num
 from twin.physics.ship import Ship, load
 from twin.recording.jsonable import plain
@@ -104,8 +104,13 @@ def tell(text: str) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Train, judge and write; the exit code. TwinError: the output cannot be written, or a library is not
-    there. ThresholdError: the residual is not worth having."""
+    there. SettingsError: the ship lists actuators. ThresholdError: the residual is not worth having."""
     ship = load(args.ship)
+    if ship.actuators:
+        raise SettingsError(
+            f"--ship {args.ship}: a network looks at one rudder and one shaft, and this ship lists "
+            "[[actuators]]: it has no learned residual. twin add gives it effects of its actuators."
+        )
     output = Path(args.output)
     manifest = output.with_suffix(".json")
     if output.suffix != ".onnx":

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from export.batches import TrainingWindows, input_names, windows
-from export.data import TrainingLeg
+from export.data import TrainingLeg, whole
 from export.residual_network import ResidualNetwork
 from export.training_loss import free_run
 from twin.num import num
@@ -43,7 +43,7 @@ class Worth:
 
     @property
     def proved(self) -> bool:
-        """The place is predicted better beyond chance, and the heading no worse."""
+        """The place is predicted better beyond chance, and the heading at most 2 % worse."""
         return self.ratio_high95 < 1.0 and self.heading_deg[1] <= 1.02 * self.heading_deg[0]
 
     def sentence(self) -> str:
@@ -89,12 +89,15 @@ def errors(network: ResidualNetwork | None, model: Model, w: TrainingWindows) ->
 
 def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], seed: int = 0) -> Worth:
     """The verdict on these legs; whole blocks are resampled, because neighbouring windows are not
-    independent."""
+    independent. DataError: they hold no free run."""
     length_s = float(model.ship.scale("time"))
     horizon = min(LENGTHS * length_s, 0.3 * max(len(leg) * leg.h for leg in legs))
     w = windows(legs, input_names(legs), horizon, 0.5 * length_s)
+    whole("test", len(w), horizon)
     course = errors(None, model, w), errors(network, model, w)
     before, after = (run.mean(0) for run in course)
+    h, told = float(w.h.mean()), [s for s in LEADS_S if s <= horizon]
+    told += [horizon] * all(horizon - s >= h for s in told)
     low, high = ratio(before[:, 0], after[:, 0], w.group, seed)
     return Worth(
         horizon,
@@ -104,7 +107,7 @@ def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], s
         (float(before[:, 1].mean()), float(after[:, 1].mean())),
         low,
         high,
-        tuple(_at(s, course, float(w.h.mean())) for s in (*LEADS_S, horizon) if s <= horizon),
+        tuple(_at(s, course, h) for s in told),
     )
 
 
@@ -128,8 +131,8 @@ def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -
 
 
 def share(network: ResidualNetwork, model: Model, s: Situation) -> float:
-    """How much of the force the network gives: rms of f over rms of f and the known forces, in units of the
-    force scale."""
+    """How much of the force the network gives: the mean size of f over that of f and the known forces, in
+    units of the force scale."""
     with torch.no_grad():
         known = [
             torch.stack([torch.as_tensor(x) + torch.zeros_like(s.u) for x in f], -1)
