@@ -213,3 +213,8 @@ def test_a_voyage_given_twice_is_refused_and_so_is_one_that_is_fitted_and_held_o
 
 def test_the_packages_type_marker_is_there():
     assert (Path(twin.__file__).parent / "py.typed").is_file()
+
+
+def test_a_map_of_no_file_is_refused():
+    with pytest.raises(UsageError, match="no file"):
+        twin.suggest_map([])

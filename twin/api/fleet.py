@@ -1,10 +1,11 @@
 """`twin.fleet`: many ships and their voyages, ranked by what is wrong."""
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Any
 
 from twin.api.result import PathLike, Progress, Result, quietly
-from twin.errors import DataError
+from twin.errors import DataError, TwinError, UsageError
 from twin.recording.jsonable import plain
 from twin.study.fleet.fleet_lines import months, terminal_lines
 from twin.study.fleet.fleet_run import run
@@ -75,10 +76,17 @@ def fleet(
 
     `output`: the folder of `rows.parquet`; what stands there and still holds is not asked again. `workers`:
     processes of this computer, 1: this one; `scheduler`: address of a dask scheduler in their place, whose
-    workers see the same files. SettingsError: the list is not valid, a ship was never calibrated, a name
+    workers see the same files. UsageError: `workers` is less than 1; TwinError: more processes need the extra
+    `fleet`; SettingsError: the list is not valid, a ship was never calibrated, a name
     stands twice; DataError: no voyage could be used. What is wrong with one voyage stands in its row. Some
     twenty seconds a voyage and processor.
     """
+    if workers < 1:
+        raise UsageError(f"workers = {workers}: at least 1 is needed.")
+    if (scheduler or workers > 1) and find_spec("distributed") is None:
+        raise TwinError(
+            "more than one worker needs the package distributed. Run: pip install 'shiptwin[fleet]'"
+        )
     ships = read_fleet(listed)
     asked = run(ships, Store(output), workers, scheduler, quietly(progress))
     made = Fleet(data=plain(ranked(asked.answers) | {"asked_now": asked.fresh}))

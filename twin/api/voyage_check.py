@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from twin.api.result import PathLike, Result
+from twin.errors import UsageError
 from twin.num import as_given
 from twin.physics.ship import Ship
 from twin.recording.checks import Check
@@ -128,7 +129,9 @@ def suggest_map(paths: PathLike | Iterable[PathLike], *, sources: Iterable[str] 
     each line rests on stands beside it.
 
     `sources`: the instrument to take of several, as "CHANNEL=NAME" or "NAME". DataError when a file cannot be
-    used.
+    used; UsageError when none is given.
     """
     given = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
+    if not given:
+        raise UsageError("no file to propose a map for: give one or more.")
     return suggestion([Path(p) for p in given], sources_of(list(sources)))

@@ -1,12 +1,12 @@
 """`twin fleet`: many ships and their voyages, one table and one page, ranked by what is wrong."""
 
 import argparse
-from importlib.util import find_spec
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from twin.api.fleet import fleet
 from twin.commands.verb_output import answer, lines_to, progress, typed
-from twin.errors import TwinError, UsageError
 from twin.study.fleet.spread import cores
 
 EPILOG = """example:
@@ -36,17 +36,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    if args.workers < 1:
-        raise UsageError(f"--workers {args.workers}: at least 1 is needed.")
-    if (args.scheduler or args.workers > 1) and find_spec("distributed") is None:
-        raise TwinError(
-            "more than one worker needs the package distributed. Run: pip install 'shiptwin[fleet]'"
-        )
     found = fleet(args.fleet, args.folder, workers=args.workers, scheduler=args.scheduler, progress=progress)
     command = typed("fleet", args.fleet, "-o", args.folder)
     rows = str(Path(args.folder) / "rows.parquet")
     answer(args, found.with_keys(command=command, rows=rows))
-    first = found.data["ships"][0]
-    look = typed("diagnose", first["latest"]["file"], "--ship", first["file"], "--report", "diagnose.html")
-    print(f"\n{rows} has every row\nnext: {look}", file=lines_to(args))
+    print(f"\n{rows} has every row\nnext: {_next(args, found.data['ships'])}", file=lines_to(args))
     return 0
+
+
+def _next(args: argparse.Namespace, ships: Sequence[Mapping[str, Any]]) -> str:
+    """The first ship that was judged is looked at."""
+    first = next((s for s in ships if s["latest"]), None)
+    if first is None:
+        again = typed("fleet", args.fleet, "-o", args.folder)
+        return f"add voyages to judge (a ship is not judged by those that it was calibrated on), then {again}"
+    return typed("diagnose", first["latest"]["file"], "--ship", first["file"], "--report", "diagnose.html")

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pyarrow.parquet as pq
 import pytest
@@ -18,6 +19,8 @@ from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.commands.story import SHIP
+from twin.errors import TwinError, UsageError
+from twin.study.fleet.listing import sha256_of
 
 
 @pytest.fixture(scope="module")
@@ -156,3 +159,26 @@ def test_what_is_wrong_with_the_command_is_one_line_and_its_exit_code(yard, tmp_
     for words, code, said in asks:
         assert cli.main(["fleet", *words]) == code
         assert said in capsys.readouterr().err.strip().splitlines()[-1]
+
+
+def test_a_fleet_of_references_alone_ends_with_what_to_do_and_no_traceback(short, tmp_path, capsys):
+    """Test: the only voyage of each ship is one that it was calibrated on."""
+    (tmp_path / "alma").mkdir()
+    shutil.copy(short / "monday.csv", tmp_path / "alma")
+    ship = twin.Ship.load(SHIP)
+    used = {"sha256": sha256_of(short / "monday.csv")}
+    structural = ship.notes["structural"]
+    own = structural | {"voyages": [*structural["voyages"], used]}
+    replace(ship, notes={**ship.notes, "structural": own}).save(tmp_path / "alma" / "ship.toml")
+    assert cli.main(["fleet", str(tmp_path), "-o", str(tmp_path / "r"), "--workers", "1"]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("next: add voyages to judge") and "twin fleet" in last
+
+
+def test_a_fleet_in_python_is_refused_as_on_the_command_line(yard, tmp_path, monkeypatch):
+    with pytest.raises(UsageError, match="workers = 0: at least 1 is needed"):
+        twin.fleet(yard / "fleet.toml", tmp_path, workers=0)
+    monkeypatch.setattr("twin.api.fleet.find_spec", lambda name: None)
+    for asked in ({"workers": 2}, {"scheduler": "tcp://127.0.0.1:1"}):
+        with pytest.raises(TwinError, match=r"pip install 'shiptwin\[fleet\]'"):
+            twin.fleet(yard / "fleet.toml", tmp_path, **asked)

@@ -92,3 +92,13 @@ def test_a_folder_with_two_ship_files_or_none_is_refused(yard, tmp_path_factory)
         read_fleet(yard)
     with pytest.raises(SettingsError, match="no folder in it holds a ship file"):
         read_fleet(tmp_path_factory.mktemp("empty"))
+
+
+def test_a_project_of_the_workbench_is_a_ships_folder(yard):
+    """Test: the settings of a project and the maps of its tables lie beside the ship file."""
+    (yard / "alma" / "project.toml").write_text('[tags]\n"tuesday.mcap" = "held_out"\n')
+    (yard / "alma" / "june-map.toml").write_text('[columns]\nheading_true_north_deg = "HDG"\n')
+    assert [s.file.name for s in read_fleet(yard)] == ["alma.toml", "berta.toml"]
+    (yard / "alma" / "alma.toml").write_text("name = \n")
+    with pytest.raises(SettingsError, match=r"alma\.toml"):
+        read_fleet(yard)

@@ -113,7 +113,7 @@ def _of_folder(folder: Path) -> list[FleetShip]:
 
 
 def _in_folder(folder: Path) -> FleetShip:
-    files = [p for p in sorted(folder.glob("*.toml")) if p.name != MAP]
+    files = [p for p in sorted(folder.glob("*.toml")) if p.name != MAP and _of_a_ship(p)]
     if len(files) != 1:
         raise SettingsError(
             f"{folder}: holds {len(files)} ship files ({', '.join(p.name for p in files) or 'none'}). Leave "
@@ -122,6 +122,14 @@ def _in_folder(folder: Path) -> FleetShip:
     by = folder / MAP if (folder / MAP).exists() else None
     voyages = [p for p in sorted(folder.iterdir()) if p.is_file() and not NO_VOYAGE.search(p.name)]
     return _made(folder.name, files[0], [FleetVoyage(p, by) for p in voyages], str(folder))
+
+
+def _of_a_ship(path: Path) -> bool:
+    """Whether a TOML is a ship file, and no map or setting; of one that is not valid its reader says why."""
+    try:
+        return "particulars" in tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return True
 
 
 def _made(name: str, file: Path, voyages: Sequence[FleetVoyage], where: str) -> FleetShip:
