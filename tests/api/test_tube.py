@@ -24,8 +24,10 @@ def voyages(tmp_path_factory):
 def found(voyages, tmp_path_factory):
     """What the command wrote: its JSON and its ship file."""
     folder = tmp_path_factory.mktemp("ship")
-    told, ship = folder / "told.json", folder / "boat.toml"
-    command = ["tube", *voyages, "--ship", "usv", "-o", str(ship), "--json", str(told)]
+    told, ship, own = folder / "told.json", folder / "boat.toml", folder / "own.toml"
+    twin.Ship.load("usv").save(own)
+    own.write_text("# ours since 2019\n" + own.read_text())
+    command = ["tube", *voyages, "--ship", str(own), "-o", str(ship), "--json", str(told)]
     assert cli.main(command) == 0
     return json.loads(told.read_text()), ship
 
@@ -46,6 +48,7 @@ def test_the_ship_file_with_its_tube_is_the_same_ship(found):
     made, before = twin.Ship.load(path), twin.Ship.load("usv")
     assert made.derivatives == before.derivatives and made.L_pp == before.L_pp
     assert set(made.notes) - set(before.notes) == {"tube"}
+    assert path.read_text().startswith("# ours since 2019\n")
 
 
 def test_a_replay_with_the_tube_says_how_it_was_kept(found, voyages, tmp_path):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.live.actuators import PODS, craft
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.recording.read import read_voyage
@@ -31,6 +32,14 @@ def test_what_a_fouled_hull_misses_acts_against_the_motion_and_goes_with_the_spe
     squared = next(c for c in test["causes"] if c["cause"] == "speed squared [kn2]")
     assert view["mean"]["X_N"] < -3e5 and abs(view["mean"]["Y_N"]) < abs(view["mean"]["X_N"])
     assert squared["correlation"] < -0.6 and squared["p"] < 0.001 and test["independent_p"] < 0.001
+
+
+def test_a_cause_of_one_thruster_is_a_model_to_predict_with():
+    """Expected: the boat's model with the worn thruster; none with a cause that the boat cannot have."""
+    boat = Model.of(craft(*PODS))
+    worn = {"effect": "ThrusterWear.port", "parameters": [{"name": "loss", "value": 0.3, "unit": "-"}]}
+    assert [type(e).__name__ for e in with_cause(boat, worn).effects] == ["ThrusterWear.port"]
+    assert with_cause(boat, FOULED | {"effect": "PropellerWear"}) is None
 
 
 def test_with_the_cause_the_missing_force_is_less(monday):

@@ -8,7 +8,7 @@ from typing import Any
 from twin import whole
 from twin.api import calibration, comparison
 from twin.errors import DataError
-from twin.physics.effects import find
+from twin.physics.effects import find_for
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.recording.checks.proved_wrong import refusal
@@ -23,6 +23,7 @@ from twin.studio.causes import MAX_CAUSES_TRIED, cause_view
 from twin.studio.forces import force_view
 from twin.studio.last_step import last_step, not_there
 from twin.studio.looked import looked, write_result
+from twin.studio.project import text_of
 from twin.studio.verbs import command_of
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.sailed import Sailed, read_all
@@ -111,7 +112,8 @@ def add(asked: Request, job: Path, tell: Progress) -> str | None:
     from twin.study.update.addition import add as fitted
 
     not_there(asked["output"])
-    ship, effects = load(asked["ship"]), [find(name) for name in dict.fromkeys(asked["effects"])]
+    ship = load(asked["ship"])
+    effects = [find_for(name, ship) for name in dict.fromkeys(asked["effects"])]
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
     sailed, held = every[: len(asked["voyages"])], every[len(asked["voyages"]) :]
     made = fitted(ship, effects, sailed, held, bool(asked.get("force")), False, tell)
@@ -175,7 +177,8 @@ def write_view(job: Path, drawn: dict[str, Any], more: dict[str, Any]) -> None:
 
 
 def difference(before: str, after: str) -> list[str]:
-    """The two ship files, line by line, as `diff -u` shows them; long lines are cut."""
-    one, other = (Path(name).read_text(encoding="utf-8").splitlines() for name in (before, after))
+    """The two ship files, line by line, as `diff -u` shows them; long lines are cut. SettingsError: one is no
+    text."""
+    one, other = (text_of(Path(name)).splitlines() for name in (before, after))
     lines = difflib.unified_diff(one, other, fromfile=before, tofile=after, n=1, lineterm="")
     return [line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]} ..." for line in lines]

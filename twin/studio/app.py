@@ -18,11 +18,12 @@ from starlette.routing import Route
 
 from twin import __version__
 from twin.errors import SettingsError, TwinError, UsageError
-from twin.physics.ship import load, save
+from twin.physics.ship import load
+from twin.recording.ship_file_writer import save
 from twin.studio.jobs import SHOWN, Jobs
 from twin.studio.live import Live
 from twin.studio.project import Project, unchanged
-from twin.studio.replies import Do, answered, body_of, page_files, toml_name
+from twin.studio.replies import Do, answered, body_of, names_in, page_files, toml_name
 from twin.studio.verbs import checked, files_of
 from twin.studio.written_map import write_map
 
@@ -119,9 +120,8 @@ class Studio:
         """Files and jobs: what every page begins with."""
         files = await run_in_threadpool(self.project.listing)
         jobs = await run_in_threadpool(self.jobs.all_told)
-        folder = str(self.project.folder)
         return {
-            "folder": folder,
+            "folder": str(self.project.folder),
             "read_only": self.read_only,
             "version": __version__,
             "files": files,
@@ -133,10 +133,12 @@ class Studio:
         return self.trials.form()
 
     async def effects(self, request: Request) -> Any:
-        from twin.physics.effects import catalogue
-        from twin.report.catalogue import as_table
+        """Of a ship, what may be wrong with it; without one the catalogue."""
+        from twin.report.catalogue import as_json, chosen
 
-        return [as_table(effect) for effect in catalogue().values()]
+        name = request.query_params.get("ship")
+        ship = load(self.project.existing(name)) if name else None
+        return as_json(chosen(None, ship), ship)["effects"]
 
     async def report(self, request: Request) -> Any:
         """The project as it stands, as one page."""
@@ -156,10 +158,8 @@ class Studio:
     async def differ(self, request: Request) -> Any:
         from twin.studio.answers import difference
 
-        one, other = (
-            str(self.project.existing(request.query_params.get(k, ""))) for k in ("before", "after")
-        )
-        lines = await run_in_threadpool(difference, one, other)
+        files = [self.project.existing(request.query_params.get(k, "")) for k in ("before", "after")]
+        lines = await run_in_threadpool(difference, *map(str, files))
         return {"lines": [line.replace(f"{self.project.folder}/", "") for line in lines]}
 
     async def try_ship(self, request: Request) -> Any:
@@ -174,8 +174,8 @@ class Studio:
     async def save_ship(self, request: Request) -> Any:
         said = await body_of(request)
         output = self.project.new(toml_name(said.get("output")))
-        ship, _ = await run_in_threadpool(self.trials.made, str(said.get("name") or ""), said.get("values"))
-        save(ship, output)
+        made = await run_in_threadpool(self.trials.made, str(said.get("name") or ""), said.get("values"))
+        made[0].save(output)
         return {"output": output.name}
 
     async def remove(self, request: Request) -> Any:
@@ -183,8 +183,8 @@ class Studio:
 
         said = await body_of(request)
         output = self.project.new(toml_name(said.get("output")))
-        ship = self.project.existing(str(said.get("ship")))
-        save(remove(load(ship), [str(name) for name in said.get("effects", [])]), output)
+        like = self.project.existing(str(said.get("ship")))
+        save(remove(load(like), names_in(said, "effects")), output, like)
         return {"output": output.name}
 
     async def demo(self, request: Request) -> Any:
@@ -240,7 +240,7 @@ class Studio:
         unchanged(self.project.path(name), text)
         try:
             write_map(self.project.path(name), edited(text, edit))
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise SettingsError(
                 f"{name}: this remedy does not fit the map: {error}. Edit the map itself."
             ) from None
@@ -296,5 +296,4 @@ class Studio:
             return {}
         log = str(self.project.existing(str(said["log"]))) if said.get("log") else None
         place = said.get("connect")
-        name = await run_in_threadpool(self.live.attach, str(place) if place else None, log)
-        return {"name": name}
+        return {"name": await run_in_threadpool(self.live.attach, str(place) if place else None, log)}

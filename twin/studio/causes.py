@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from twin.num import READABLE
-from twin.physics.effects import catalogue
+from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.report.series import packed, stitched
 from twin.study.diagnosis.set_and_rate import stream_in_words
@@ -42,7 +42,7 @@ def number(p: Mapping[str, Any]) -> dict[str, Any]:
 
 def with_cause(model: Model, candidate: Mapping[str, Any], key: str = "value") -> Model | None:
     """The model with a candidate at its estimate (`key`: value, low95 or high95); None when it cannot be."""
-    effect = catalogue().get(candidate["effect"])
+    effect = of_ship(model.ship).get(candidate["effect"])
     values = {p["name"]: p.get(key) for p in candidate.get("parameters", [])}
     if effect is None or any(v is None for v in values.values()) or not values:
         return None

@@ -20,6 +20,7 @@ from twin.recording.read import read_voyage
 from twin.recording.suggest_map import suggestion
 from twin.recording.units import UNITS, unit_of
 from twin.recording.voyage import Voyage
+from twin.studio.project import text_of
 from twin.studio.remedies import channels_of, remedies_of
 
 MOST_CHOICES = 60  # columns that are offered
@@ -50,7 +51,7 @@ def looked(folder: Path, file: str, map_name: str | None, ship: str | None, job:
 def _map_text(path: Path, map_file: Path | None) -> str:
     """The map's own text; the proposed one where there is none; "" for a log that needs none."""
     if map_file is not None:
-        return map_file.read_text(encoding="utf-8")
+        return text_of(map_file)
     if path.suffix.lower() == ".mcap":
         return ""
     return suggestion([path], sources_of([]))

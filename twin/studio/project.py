@@ -124,10 +124,20 @@ def kind_of(path: Path) -> str:
     return "ship" if "particulars" in tables else "map" if "columns" in tables else "settings"
 
 
+def text_of(path: Path) -> str:
+    """What a file says; SettingsError where it is no text in UTF-8."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise SettingsError(
+            f"{path.name}: is no text in UTF-8 ({error.reason} at byte {error.start}). Save it as UTF-8."
+        ) from None
+
+
 def unchanged(path: Path, base: Any) -> None:
     """SettingsError when the map on the disk is not the one that a page began with: what another page, or
     another program, wrote meanwhile is not lost."""
-    if base is not None and path.exists() and path.read_text(encoding="utf-8") != base:
+    if base is not None and path.exists() and text_of(path) != base:
         raise SettingsError(
             f"{path.name}: was changed meanwhile, in another window or by another program. Look at the file "
             "again, and then change the map."

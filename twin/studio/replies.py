@@ -57,6 +57,14 @@ async def body_of(request: Request) -> dict[str, Any]:
     return said
 
 
+def names_in(said: dict[str, Any], key: str) -> list[str]:
+    """A list of names in a request; UsageError when it is something else."""
+    names = said.get(key, [])
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise UsageError(f"{key} must be a list of names.")
+    return names
+
+
 def toml_name(name: Any) -> str:
     text = str(name or "").strip()
     if not text:

@@ -66,7 +66,8 @@ MAX_NAMES = 200  # names in a list
 
 def checked(asked: Any) -> dict[str, Any]:
     """What is asked, with nothing that its verb does not know; UsageError says what is wrong with it."""
-    verb = VERBS.get(asked.get("verb", "")) if isinstance(asked, Mapping) else None
+    name = asked.get("verb") if isinstance(asked, Mapping) else None
+    verb = VERBS.get(name) if isinstance(name, str) else None
     if verb is None:
         raise UsageError(f"a job names its verb: one of {', '.join(VERBS)}.")
     for key, value in asked.items():
