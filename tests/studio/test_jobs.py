@@ -78,3 +78,41 @@ def test_the_server_goes_on_taking_turns_after_one_that_failed(tmp_path, monkeyp
     monkeypatch.setattr(studio.jobs, "turn", turn)
     anyio.run(served)
     assert turns[:3] == [0, 1, 2]
+
+
+def over(jobs, name):
+    """A job that is done."""
+    whole.write(jobs.folder / name / "end.json", '{"exit_code": 0, "ended_s": 1.0}')
+
+
+def test_a_new_look_at_a_file_takes_the_place_of_the_older_ones(jobs):
+    """Expected: those that are over are forgotten with their samples; one at work, other files and verbs stay."""
+    old, other, compared, busy = (
+        jobs.add(asked)
+        for asked in (
+            ASKED,
+            ASKED | {"file": "tuesday.mcap"},
+            {"verb": "compare", "ship": "s.toml", "voyages": ["monday.mcap"]},
+            ASKED,
+        )
+    )
+    for name in (old, other, compared):
+        over(jobs, name)
+    new = jobs.add(ASKED)
+    assert jobs.names() == [other, compared, busy, new]
+
+
+def test_what_ended_is_not_read_again_at_every_turn(jobs, monkeypatch):
+    """Expected: a job that is over is read once; its name, given to a new one, is that of the new one."""
+    name, read_files = jobs.add({"verb": "import", "file": "a.csv", "output": "a.mcap"}), []
+    over(jobs, name)
+    jobs.turn()
+    first = jobs.all_told()
+    monkeypatch.setattr("twin.studio.jobs.read", lambda path: read_files.append(path))
+    jobs.turn()
+    assert jobs.all_told() == first and first[0]["state"] == "done" and not read_files
+    monkeypatch.undo()
+    monkeypatch.setattr(subprocess, "Popen", Worker)
+    jobs.forget(name)
+    assert jobs.add({"verb": "import", "file": "a.csv", "output": "a.mcap"}) == name
+    assert jobs.all_told()[0]["state"] == "waiting"

@@ -45,11 +45,13 @@ class Jobs:
         self.project = project
         self.folder = project.folder / JOBS
         self._ours: dict[str, subprocess.Popen[bytes]] = {}
+        self._over: dict[str, dict[str, Any]] = {}  # what is shown of a job that ended: it stays as it is
         self._tidied: set[str] = set()  # jobs that died, whose half of a ship is removed
         self._turning = threading.Lock()  # no job begins while one is cancelled
 
     def add(self, asked: Mapping[str, Any]) -> str:
-        """Notes what is asked; it begins at the next `turn`. The job's name."""
+        """Notes what is asked; it begins at the next `turn`. The job's name. A look takes the place of the
+        older ones at that file."""
         command = command_of(asked)  # refuses what cannot be meant, before anything is written
         self.folder.mkdir(exist_ok=True)
         number = 1 + max((int(name[:4]) for name in self.names()), default=0)
@@ -60,9 +62,19 @@ class Jobs:
                 break
             except FileExistsError:
                 number += 1
+        self._over.pop(name, None)  # of one that was forgotten
         note = {"asked": dict(asked), "command": command, "created_s": round(time.time(), 3)}
         whole.write(self.folder / name / JOB, json.dumps(note, indent=1) + "\n")
+        if asked["verb"] == "look":
+            self._forget_looks(asked["file"])
         return name
+
+    def _forget_looks(self, file: str) -> None:
+        """Those at a file that are over: nobody asks for them again, and their samples are large."""
+        for told in self.all_told():
+            if told["verb"] == "look" and told["asked"]["file"] == file:
+                with suppress(SettingsError):  # it is at work
+                    self.forget(told["name"])
 
     def turn(self) -> None:
         """Starts what waits, as many at once as may; takes leave of our workers that ended."""
@@ -86,7 +98,7 @@ class Jobs:
         found = {}
         for name in self.names():
             with suppress(SettingsError):
-                found[name] = self.state(name)
+                found[name] = self._over[name]["state"] if name in self._over else self.state(name)
         return found
 
     def _tidy(self, name: str) -> None:
@@ -139,12 +151,14 @@ class Jobs:
 
     def report(self, name: str) -> dict[str, Any]:
         """What the page shows of a job."""
+        if name in self._over:
+            return self._over[name]
         folder, state = self.at(name), self.state(name)
         note, worker, end = (read(folder / f) or {} for f in (JOB, WORKER, END))
         began_s = worker.get("began_s")
         over_s = end.get("ended_s") or time.time()
         took_s = None if began_s is None else round(over_s - began_s, 1)
-        return {
+        told = {
             "name": name,
             "state": state,
             "verb": note.get("asked", {}).get("verb"),
@@ -158,6 +172,9 @@ class Jobs:
             "exit_code": end.get("exit_code"),
             "has": [f for f in SHOWN if (folder / f).is_file()],
         }
+        if state not in ("waiting", "running", "died"):  # which may have ended since
+            self._over[name] = told
+        return told
 
     def all_told(self) -> list[dict[str, Any]]:
         told = []
@@ -185,6 +202,7 @@ class Jobs:
             if self.state(name) in ("waiting", "running"):
                 raise SettingsError(f"{name}: is at work. Cancel it first.")
             shutil.rmtree(self.at(name))
+            self._over.pop(name, None)
 
     def _usual_s(self, note: Mapping[str, Any]) -> float | None:
         """How long this verb took in this project, by the bytes that it read; None before the first."""

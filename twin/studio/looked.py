@@ -9,7 +9,7 @@ import numpy as np
 
 from twin import whole
 from twin.errors import TwinError
-from twin.physics.ship import load
+from twin.physics.ship import Ship, load
 from twin.recording.checks import run_checks
 from twin.recording.columns_seen import columns_seen
 from twin.recording.formats import recognised
@@ -44,8 +44,18 @@ def looked(folder: Path, file: str, map_name: str | None, ship: str | None, job:
     except (TwinError, tomllib.TOMLDecodeError) as error:
         told["problem"] = str(error).replace(f"{folder}/", "")
     if voyage is not None:
-        told |= _of_voyage(voyage, load(folder / ship) if ship else None, job)
+        known, said = _ship(folder, ship)
+        told |= _of_voyage(voyage, known, job)
+        told["notes"] = [*said, *told["notes"]]
     return told
+
+
+def _ship(folder: Path, name: str | None) -> tuple[Ship | None, list[str]]:
+    """The ship that lets the checks say more; one that cannot be read is left out, and it is said."""
+    try:
+        return (load(folder / name) if name else None), []
+    except TwinError as error:
+        return None, [f"{error} The checks are made without the ship.".replace(f"{folder}/", "")]
 
 
 def _map_text(path: Path, map_file: Path | None) -> str:
@@ -98,7 +108,7 @@ def _range(x: np.ndarray) -> dict[str, float]:
     )
 
 
-def _of_voyage(voyage: Voyage, ship: Any, job: Path) -> dict[str, Any]:
+def _of_voyage(voyage: Voyage, ship: Ship | None, job: Path) -> dict[str, Any]:
     names = [name for name in voyage.columns if voyage.has(name)]
     checks = run_checks(voyage, ship)
     every = max(1, -(-len(voyage) // MOST_SAMPLES))

@@ -10,11 +10,18 @@ import { timeView } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
 import { answerOf, earlier, foot, go, kept, lacks, nextName, pickVoyages, theShip } from "/app/shared.js";
 
-let effects = null;
+let effects = [], of = null;
+
+/** What may be wrong with the ship; what was chosen for another is left out. */
+async function offered(ship) {
+  if (of !== ship) [effects, of] = [await ask(`/api/effects?ship=${encodeURIComponent(ship)}`), ship];
+  const chosen = kept("add.effects", () => new Set());
+  for (const name of chosen) if (!effects.some((e) => e.name === name)) chosen.delete(name);
+}
 
 export async function add(r) {
-  effects ??= await ask("/api/effects");
   prefill(r);
+  await offered(theShip("add").name);
   const out = [el("h1", null, "Add an effect, and watch the error fall"), lacks(), asker(r.item)];
   if (!r.item) return out;
   const a = await answerOf(r.item);
@@ -33,7 +40,7 @@ function prefill(r) {
 }
 
 function asker(item) {
-  const ship = theShip("add"), chosen = kept("add.effects", () => new Set()), v = pickVoyages("fitted on", "add.voyages", ["voyage"]), held = pickVoyages("proved on (none: the last third of each)", "add.held", ["held_out"]);
+  const ship = theShip("add", again), chosen = kept("add.effects", () => new Set()), v = pickVoyages("fitted on", "add.voyages", ["voyage"]), held = pickVoyages("proved on (none: the last third of each)", "add.held", ["held_out"]);
   if (!state.kept["add.output"] || files("ship").some((f) => f.name === state.kept["add.output"])) state.kept["add.output"] = nextName(ship.name || "ship.toml", [...chosen].length ? `-${[...chosen][0].toLowerCase()}` : "-better");
   const output = el("input", { type: "text", id: "add-output", value: state.kept["add.output"], oninput: (e) => { state.kept["add.output"] = e.target.value; } });
   const first = effects.filter((e) => chosen.has(e.name)), rest = effects.filter((e) => !chosen.has(e.name));

@@ -5,7 +5,7 @@ import { again, doing } from "/app/main.js";
 import { boxes, button, card, choose, command, el, field, named, quoted, table } from "/app/dom.js";
 import { asGiven, num } from "/app/number.js";
 import { timePlot, timeView, zoomer } from "/app/plot.js";
-import { TAGS, answerOf, go, kept, stateWord } from "/app/shared.js";
+import { TAGS, answerOf, go, kept, stateWord, theShip } from "/app/shared.js";
 import { kept as saved } from "/app/save.js";
 
 export async function data(r) {
@@ -63,18 +63,18 @@ const mapOf = (file) => `${file.replace(/\.[^.]+$/, "")}-map.toml`;
 async function looked(name) {
   const file = state.project.files.find((f) => f.name === name), title = el("h1", null, name);
   if (!file) return [title, el("p", null, "This file is not in the project (any more).")];
-  const map = files("map").find((f) => f.name === mapOf(name)), since = Math.max(file.changed_s, map?.changed_s || 0);
-  const fresh = state.jobs.filter((j) => j.verb === "look" && j.asked.file === name && (j.asked.map || "") === (map?.name || "") && j.created_s >= since - 0.05).at(-1);
+  const map = files("map").find((f) => f.name === mapOf(name)), since = Math.max(file.changed_s, map?.changed_s || 0), ship = theShip("data", again);
+  const fresh = state.jobs.filter((j) => j.verb === "look" && j.asked.file === name && (state.project.read_only || (j.asked.ship || "") === ship.name) && (j.asked.map || "") === (map?.name || "") && j.created_s >= since - 0.05).at(-1);
   if (!fresh) {
     if (state.project.read_only) return [title, el("p", null, "It was not looked at before, and this project is open for reading only.")];
-    await ask("/api/jobs", { verb: "look", file: name, map: map?.name, ship: files("ship").at(-1)?.name });
+    await ask("/api/jobs", { verb: "look", file: name, map: map?.name, ship: ship.name });
     await again();
     return [title, el("p", { role: "status" }, "Looking at it ...")];
   }
   const { job, waiting, result } = await answerOf(fresh.name);
   if (waiting) return [title, waiting];
   const view = timeView(), x = result.samples ? await samples(job.name, result) : null;
-  return [title, head(file, result), result.problem ? problem(result) : null, x ? checks(result, x, view, name) : null, mapCard(result, x, name), x ? channels(result, x, view) : null, file.kind === "voyage" || (result.problem && !result.map_text) ? null : importer(name, result, map)];
+  return [title, head(file, result), ship.name && !state.project.read_only ? card("The ship that the checks know", el("form", null, ship.select)) : null, result.problem ? problem(result) : null, x ? checks(result, x, view, name) : null, mapCard(result, x, name), x ? channels(result, x, view) : null, file.kind === "voyage" || (result.problem && !result.map_text) ? null : importer(name, result, map, ship.name)];
 }
 
 function head(file, k) {
@@ -139,18 +139,21 @@ function taker(k, name) {
   return el("details", { open: !!k.problem }, el("summary", null, `${free.length} columns are not used`), table("What else the file holds: say what a column is, and it is read", ["column of the file", "values", "it is", "in", ""], free.map(row)));
 }
 
-function importer(name, k, map) {
-  const key = `import.${name}`, output = el("input", { type: "text", id: "import-output", value: kept(key, () => `${name.replace(/\.[^.]+$/, "")}.mcap`), oninput: (e) => { state.kept[key] = e.target.value; } });
+function importer(name, k, map, ship) {
+  const key = `import.${name}`, output = el("input", { type: "text", id: "import-output", value: kept(key, () => `${name.replace(/\.[^.]+$/, "")}.mcap`), oninput: (e) => { state.kept[key] = e.target.value; say(); } });
   const accept = kept(`accept.${name}`, () => new Set()), refused = k.refused || [];
-  const asked = () => ({ verb: "import", file: name, map: mapOf(name), output: output.value, ship: files("ship").at(-1)?.name, accept: [...accept] });
+  const asked = () => ({ verb: "import", file: name, map: mapOf(name), output: output.value, ship, accept: [...accept] });
+  const line = el("div"), words = () => ["twin import", quoted(name), "--map", quoted(mapOf(name)), ...(ship ? ["--ship", quoted(ship)] : []), ...[...accept].flatMap((c) => ["--accept", c]), "-o", quoted(output.value)];
+  const say = () => line.replaceChildren(command(words().join(" ")));
+  say();
   const run = async () => {
     if (!map) await ask("/api/maps", { name: mapOf(name), text: k.map_text });
     await start(asked(), "data");
     location.hash = address("data");
   };
   return card("Import", refused.length ? el("p.bad", null, `Refused while ${refused.join(", ")} ${refused.length > 1 ? "prove" : "proves"} a mistake: apply the remedy, or accept it.`) : el("p", null, "Checked and written as a voyage that every verb reads."),
-    el("form", null, field("voyage file", output), refused.length ? boxes("import although it says otherwise", "accept", refused.map((c) => [c, c.replaceAll("_", " ")]), accept, () => { button_.disabled = refused.some((c) => !accept.has(c)); }) : null, (button_ = go("Import", run, !!k.problem || refused.some((c) => !accept.has(c))))),
-    command(`twin import ${quoted(name)} --map ${quoted(mapOf(name))} -o ${quoted(output.value)}`), imports(name));
+    el("form", null, field("voyage file", output), refused.length ? boxes("import although it says otherwise", "accept", refused.map((c) => [c, c.replaceAll("_", " ")]), accept, () => { button_.disabled = refused.some((c) => !accept.has(c)); say(); }) : null, (button_ = go("Import", run, !!k.problem || refused.some((c) => !accept.has(c))))),
+    line, imports(name));
 }
 
 let button_ = null;

@@ -13,11 +13,11 @@ export function kept(name, first) {
   return state.kept[name];
 }
 
-/** The ship to start from: the newest ship file, unless another was chosen. */
-export function theShip(name) {
+/** The ship to start from: the newest ship file, unless another was chosen. `changed`: what follows then. */
+export function theShip(name, changed) {
   const ships = files("ship").sort((a, b) => a.changed_s - b.changed_s).map((f) => f.name), key = `${name}.ship`;
   if (!ships.includes(state.kept[key])) state.kept[key] = ships.at(-1) || "";
-  return { name: state.kept[key], select: field("ship file", choose(`${name}-ship`, ships.map((s) => [s, s]), state.kept[key], (v) => { state.kept[key] = v; })) };
+  return { name: state.kept[key], select: field("ship file", choose(`${name}-ship`, ships.map((s) => [s, s]), state.kept[key], (v) => { state.kept[key] = v; changed?.(); })) };
 }
 
 export function pickVoyages(legend, name, tags) {
