@@ -218,3 +218,9 @@ def test_the_packages_type_marker_is_there():
 def test_a_map_of_no_file_is_refused():
     with pytest.raises(UsageError, match="no file"):
         twin.suggest_map([])
+
+
+@pytest.mark.parametrize("manoeuvre", ["circle_9999", "circle_-90.5", "zigzag_270", "zigzag_0"])
+def test_a_rudder_stands_where_one_can_stand(tanker, manoeuvre):
+    with pytest.raises(UsageError, match=f"{manoeuvre}: .* deg"):
+        twin.simulate(tanker, manoeuvre=manoeuvre, duration_s=10.0)

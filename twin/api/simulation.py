@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Result
 from twin.errors import UsageError
+from twin.live.signals.channels import BY_NAME
 from twin.num import as_given
 from twin.physics.model import Eta_nu, Model
 from twin.physics.ship import Ship
@@ -76,7 +77,8 @@ def simulate(
     (default: service speed).
 
     `manoeuvre`: straight, zigzag_ANGLE or circle_ANGLE with the angle in degrees (positive: starboard first).
-    UsageError when there is no such manoeuvre or duration or speed is not positive.
+    UsageError when there is no such manoeuvre, no rudder stands at its angle, or duration or speed is not
+    positive.
     """
     if not 0.0 < duration_s <= 1e6:
         raise UsageError(f"duration_s = {as_given(duration_s)}: seconds between 0 and 1e6 are needed.")
@@ -106,9 +108,13 @@ def _steer(manoeuvre: str) -> Steer:
         return lambda state: 0.0
     if found is None:
         raise UsageError(f"no manoeuvre is called {manoeuvre!r}. Known: {KNOWN}.")
-    angle = radians(float(found[2]))
+    angle, most = radians(float(found[2])), BY_NAME["rudder_angle_deg"].high
+    if abs(float(found[2])) > most:
+        raise UsageError(f"{manoeuvre}: a rudder stands at {as_given(most)} deg to either side at most.")
     if found[1] == "circle":
         return lambda state: angle
+    if not angle:
+        raise UsageError(f"{manoeuvre}: a zigzag needs an angle that is not 0 deg.")
     return _zigzag(angle)
 
 
