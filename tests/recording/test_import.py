@@ -9,7 +9,7 @@ import pytest
 from tests import command_lines
 from twin.cli import main
 from twin.commands import import_ as verb
-from twin.errors import DataError, SettingsError
+from twin.errors import DataError, SettingsError, UsageError
 from twin.recording.import_voyage import how_often, import_voyage
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
@@ -133,3 +133,9 @@ def test_of_a_log_with_a_row_for_each_sentence_it_is_said_how_often_a_heading_ca
     assert how_often(Voyage("log", t, {"heading_true_north_deg": heading}, {})) == "a heading every 1 s"
     table = Voyage("table", t * 2.5, {"heading_true_north_deg": np.full(t.size, 90.0)}, {})
     assert how_often(table) == "a sample every 0.5 s"
+
+
+@pytest.mark.parametrize("words", [("--json", "-"), ("--report", "r.html"), ("--accept", "wind")])
+def test_a_map_is_proposed_alone(sail, write_csv, words):
+    with pytest.raises(UsageError, match="--suggest-map writes a map and imports nothing"):
+        run(write_csv(sail(60.0)), "--suggest-map", *words)

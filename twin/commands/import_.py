@@ -36,6 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    if args.suggest_map and (args.json or args.report or args.accept):
+        raise UsageError("--suggest-map writes a map and imports nothing: no --json, --report or --accept.")
     progress(f"reading {' '.join(args.file)}")
     if args.suggest_map:
         text, confirmed = suggest_map(args.file, sources=args.source), after_map(args.file, args.output)

@@ -105,7 +105,8 @@ def _from(spans: list[list[float]], start_s: float) -> list[list[float]]:
 
 
 def _sha256(path: str) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _voyage(
