@@ -145,7 +145,7 @@ def split(legs: Sequence[TrainingLeg], block_s: float = BLOCK_S) -> dict[str, li
     return parts
 
 
-def whole(part: str, stretches: int, horizon_s: float) -> None:
+def check_stretches(part: str, stretches: int, horizon_s: float) -> None:
     """DataError: a part of the data has no stretch of a free run's length [s] without a hole."""
     if not stretches:
         raise DataError(

@@ -8,7 +8,7 @@ from pathlib import Path
 import torch
 
 from export.batches import TrainingSamples, input_names, samples, windows, zeta_of
-from export.data import TrainingLeg, whole
+from export.data import TrainingLeg, check_stretches
 from export.residual_network import ResidualNetwork, names_for
 from export.settings import STAGES, Progress, Set, TrainingSettings
 from export.training_course import TrainingCourse
@@ -44,7 +44,9 @@ def prepared(parts: dict[str, list[TrainingLeg]], model: Model, settings: Traini
         for part in ("train", "validation")
     }
     for part, one in data.items():
-        whole(part, len(one.windows) if "rollout" in STAGES[settings.loss] else len(one.samples), horizon)
+        check_stretches(
+            part, len(one.windows) if "rollout" in STAGES[settings.loss] else len(one.samples), horizon
+        )
     return data
 
 

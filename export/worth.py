@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from export.batches import TrainingWindows, input_names, windows
-from export.data import TrainingLeg, whole
+from export.data import TrainingLeg, check_stretches
 from export.residual_network import ResidualNetwork
 from export.training_loss import free_run
 from twin.num import num
@@ -93,7 +93,7 @@ def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], s
     length_s = float(model.ship.scale("time"))
     horizon = min(LENGTHS * length_s, 0.3 * max(len(leg) * leg.h for leg in legs))
     w = windows(legs, input_names(legs), horizon, 0.5 * length_s)
-    whole("test", len(w), horizon)
+    check_stretches("test", len(w), horizon)
     course = errors(None, model, w), errors(network, model, w)
     before, after = (run.mean(0) for run in course)
     h, told = float(w.h.mean()), [s for s in LEADS_S if s <= horizon]

@@ -13,16 +13,13 @@ pytest.importorskip("onnx", reason="onnx is not installed: pip install 'shiptwin
 
 from export import to_onnx, train  # noqa: E402
 from export.batches import shuffled, zeta_of  # noqa: E402
-from export.data import split  # noqa: E402
 from export.residual_network import ResidualNetwork  # noqa: E402
 from export.settings import TrainingSettings  # noqa: E402
 from export.teach import device, prepared, teach  # noqa: E402
 from export.training_course import TrainingCourse  # noqa: E402
-from export.worth import worth  # noqa: E402
-from tests.live.actuators import PODS, craft  # noqa: E402
 from tests.thorough import thorough  # noqa: E402
 from twin.cli import main  # noqa: E402
-from twin.errors import DataError, ThresholdError  # noqa: E402
+from twin.errors import ThresholdError  # noqa: E402
 from twin.live.learning import residual as live  # noqa: E402
 from twin.physics.state import Situation  # noqa: E402
 from twin.report.training_page import training_page  # noqa: E402
@@ -281,39 +278,3 @@ def test_little_data_is_taught_in_smaller_batches_and_not_in_fewer_steps(parts):
         many, batch = course._amount("acceleration")
         assert many == len(data["train"].samples) and batch <= FEW.batch
         assert len(list(shuffled(many, batch, 1))) >= 50
-
-
-def test_a_file_that_is_no_manifest_is_not_written_over_by_one(tmp_path, capsys):
-    """Test: monday.json is there, and monday.onnx is not. Expected: one line before any work; the file as it was."""
-    (tmp_path / "monday.json").write_text("mine")
-    assert main(["train", "v.mcap", "--ship", "kvlcc2", "-o", str(tmp_path / "monday.onnx")]) == 1
-    assert "monday.json, which is there" in capsys.readouterr().err
-    assert (tmp_path / "monday.json").read_text() == "mine"
-
-
-def test_a_ship_with_actuators_is_refused_before_anything_is_read(tmp_path, capsys):
-    craft(*PODS).save(tmp_path / "boat.toml")
-    words = ["train", "v.mcap", "--ship", str(tmp_path / "boat.toml"), "-o", str(tmp_path / "r.onnx")]
-    assert main(words) == 5
-    assert "lists [[actuators]]" in capsys.readouterr().err
-
-
-def test_a_voyage_too_short_for_a_roll_out_is_refused_in_words(parts):
-    """Test: five minutes of one voyage, whose validation part is shorter than a roll-out."""
-    split_parts, model = parts
-    short = split([split_parts["train"][0].part(0, 150)])
-    with pytest.raises(DataError, match=r"validation: no stretch of 60\.2 s"):
-        prepared(short, model, TrainingSettings())
-    prepared(short, model, TrainingSettings(loss="acceleration"))
-    with pytest.raises(DataError, match="test: no stretch"):
-        worth(None, model, [replace(one, whole=np.zeros(len(one), bool)) for one in short["test"]])
-
-
-def test_no_two_of_the_horizons_that_are_told_are_a_step_apart(parts, monkeypatch):
-    """Test: free runs of 120.4 s, as KVLCC2's are. Expected: their errors after 120 s stand there once."""
-    split_parts, model = parts
-    monkeypatch.setattr("export.worth.LENGTHS", 120.4 / float(model.ship.scale("time")))
-    told = worth(None, model, split_parts["test"])
-    assert [s for s, *_ in told.leads] == [10.0, 60.0, 120.0]
-    monkeypatch.setattr("export.worth.LENGTHS", 90.0 / float(model.ship.scale("time")))
-    assert [round(s) for s, *_ in worth(None, model, split_parts["test"]).leads] == [10, 60, 90]

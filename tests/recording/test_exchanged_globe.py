@@ -46,7 +46,7 @@ def test_an_exchanged_latitude_is_named_and_its_columns_are_swapped(table, place
     assert "latitude and longitude are exchanged" in wrong[0].text
     assert "that is believed" in wrong[0].text
     (remedy,) = remedies_of(wrong[0], ["latitude_deg", "longitude_deg"])
-    assert remedy["edit"] == {"swap": ["latitude_deg", "longitude_deg"]}
+    assert remedy["edit"] == {"swap": [["latitude_deg", "longitude_deg"]]}
     assert not [c for c in run_checks(read_voyage(table(*place))) if c.unusable]
 
 
