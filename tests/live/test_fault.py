@@ -153,7 +153,7 @@ def test_replay_of_a_faulty_voyage_names_the_fault(tmp_path, capsys):
         (["rudder", "stuck", "--log", VOYAGE], 2, "-o"),
         (["clock", "--log", VOYAGE, "-o", "o.mcap"], 2, "seconds"),
         (["rudder", "wrong", "--by", "nan", "--log", VOYAGE, "-o", "o.mcap"], 2, "finite"),
-        (["rudder", "off", "--log", VOYAGE, "-o", VOYAGE], 2, "itself"),
+        (["rudder", "off", "--log", VOYAGE, "-o", VOYAGE], 5, "would be lost"),
         (["depth", "off", "--from", "99999", "--log", VOYAGE, "-o", "o.mcap"], 4, "nothing in it is changed"),
         (["rudder", "off", "--log", "no.mcap", "-o", "o.mcap"], 4, "no.mcap"),
         (["rudder", "off", "--from", "-1", "--log", VOYAGE, "-o", "o.mcap"], 2, "--from"),

@@ -1,12 +1,11 @@
 """A copy of a log with a fault in it."""
 
-import os
 from contextlib import suppress
 from typing import Any
 
 from google.protobuf.message import DecodeError
 
-from twin.errors import DataError, UsageError
+from twin.errors import DataError
 from twin.live.injection.faulty import Faulty, Sample
 from twin.live.injection.inject import InjectedFault
 from twin.live.keelson import messages
@@ -17,10 +16,7 @@ from twin.live.log.own_row import ROW, own_row
 
 def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> tuple[int, list[str]]:
     """A copy of a log with the fault in it, whole or not at all; how many messages it changed, and what
-    was wrong with the log itself. UsageError: the copy would be the log itself. DataError: the fault
-    changes nothing in it."""
-    if os.path.realpath(path) == os.path.realpath(output):
-        raise UsageError(f"-o {output}: is the log itself. Give another name.")
+    was wrong with the log itself. `output`: another file. DataError: the fault changes nothing in it."""
     reader, faulty, own = McapReader(path), None, dict[str, Any]()
     with LogFile(output, own) as log:
         for message in reader.messages():
