@@ -12,6 +12,7 @@ from bench.fleet.plausibility import build
 from bench.fleet.voyage_plan import generator, plan, sailed
 from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
+from twin.study.diagnosis import by_kinematics
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.by_kinematics import (
     beyond_usual,
@@ -23,6 +24,7 @@ from twin.study.diagnosis.by_kinematics import (
 )
 from twin.study.first_model.first_estimate import OPTIONS, first_model
 from twin.study.instruments.on_references import KinematicOfVoyage, KinematicRecord, KinematicUsual
+from twin.study.instruments.unknowns import INDEX
 from twin.study.reference.evidence import Nuisance
 from twin.study.track.track import track
 
@@ -77,6 +79,29 @@ def test_a_compass_that_was_as_slow_on_the_references_is_no_other_one(slow):
     assert other_than_before(as_before) == []
     as_before.record = record([0.0, 0.04], clock=slow.found.clock)
     assert other_than_before(as_before) == ["heading_delay"]
+
+
+@pytest.mark.parametrize("instead, beside", [((), {"log_scale", "log_bias"}), (("log_bias",), {"log_bias"})])
+def test_a_number_is_told_in_the_place_of_a_fault_that_the_voyages_do_not_tell_from_it(
+    monkeypatch, instead, beside
+):
+    """Test: a log whose scale is seen, or its scale or bias. Expected: its bias beside the scale, or alone."""
+    asked_of_equations = []
+
+    def equations(_, __, open_ones):
+        asked_of_equations.append(set(open_ones))
+        return SimpleNamespace(at=[INDEX["log_bias"]], number=lambda i: (0.4, 0.1))
+
+    monkeypatch.setattr(by_kinematics, "equations", equations)
+    found = SimpleNamespace(
+        faults=("log_scale",),
+        instead={"log_scale": instead},
+        log_bayes_factors={"log_scale": 30.0, "log_bias": 29.0},
+        readings=(None,),
+        fit=None,
+    )
+    assert by_kinematics.AskedKinematics(found, None).number("log_bias") == (0.4, 0.1)
+    assert asked_of_equations == [beside]
 
 
 def test_ages_from_another_instrument_are_not_compared(slow):

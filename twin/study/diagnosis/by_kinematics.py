@@ -55,10 +55,12 @@ class AskedKinematics:
         return tuple(n for n in self.record.numbers if same or n not in CLOCKS)
 
     def number(self, name: str) -> tuple[float, float] | None:
-        """(value, sd) of one number beside the faults of these voyages and of the references."""
+        """(value, sd) of one number beside the faults of these voyages and of the references; in the place
+        of a fault that the voyages do not tell from its own."""
         fault = UNKNOWNS[INDEX[name]].fault
+        seen = (f for f in self.found.faults if fault not in self.found.instead[f])
         before = self.record.faults if self.record else ()
-        open_ones = {*self.found.faults, *before, fault}.intersection(self.found.log_bayes_factors)
+        open_ones = {*seen, *before, fault}.intersection(self.found.log_bayes_factors)
         if fault not in open_ones:
             return None
         told = equations(self.found.fit, range(len(self.found.readings)), open_ones)

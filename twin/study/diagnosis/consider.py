@@ -10,9 +10,10 @@ import numpy as np
 from twin.physics.ship_notes import read_from
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.criteria import CLEAR, SURE
+from twin.study.diagnosis.criteria import CLEAR, SURE, USUAL
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
+from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.irregular import comes_and_goes
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
@@ -53,7 +54,7 @@ def consider(
     """The facts of the likeliest hypothesis, of what is without causes, and of every cause that may be
     named. `asked`: what kinematics say of these voyages, where an instrument is suspected."""
     best, base = found[w.best.effects], without_causes(case, weighed, found)
-    nothing = found[base]
+    bare = found[base]
     explanation, left = _explanation(case, weighed, found)
     pushes = moments(case, best)
     named = dict.fromkeys(
@@ -72,6 +73,7 @@ def consider(
         )
         for name in named
     ]
+    causes = without_hollow(case, found, explanation, causes)
     weather = [
         _cause(case, weighed, found, explanation, name, w, ()) for name, p in w.weather.items() if p >= SURE
     ]
@@ -83,7 +85,7 @@ def consider(
         likeliest=w.best.effects,
         explanation=explanation,
         left=left,
-        error_nothing=nothing.open_loop_error_m / nothing.expected_error_m,
+        error_nothing=bare.open_loop_error_m / bare.expected_error_m,
         error_best=_ratio(best.open_loop_error_m, best.expected_error_m),
         manoeuvre=case.excited,
         power=power(case, seen),
@@ -91,7 +93,7 @@ def consider(
         noise=_by_axis(np.array(case.noise_model.white) / case.white),
         scatter=case.noise_model.sensor / case.scatter,
         sea=any(at_sea(t, case.model) for t in case.tracks),
-        rough=roughly(case) / nothing.expected_error_m,
+        rough=roughly(case) / bare.expected_error_m,
         transient=strongest.log_evidence if strongest else 0.0,
         in_waves=any(m.voyage == t.name and wave_period_s(t) > 0.0 for m in pushes for t in case.tracks),
         resembles=tuple(name for name, p in w.unnamed.items() if p >= SURE),
@@ -103,6 +105,19 @@ def consider(
         comes_and_goes=comes_and_goes(case, found[explanation or w.best.effects]),
     )
     return Considered(facts, base, pushes, like, healthy)
+
+
+def without_hollow(
+    case: Case, found: Mapping[Sets, Found], explanation: Sets, causes: Sequence[Cause]
+) -> list[Cause]:
+    """The causes; one that ends at nothing without the instruments that are as they were on the references
+    is no part of the explanation: it only made good what those took."""
+    as_before = {c.effect for c in causes if (c.reached or 0.0) >= USUAL}
+    kept = tuple(name for name in explanation if name not in as_before)
+    if kept == explanation or kept not in found:
+        return list(causes)
+    hollow = {name for name in kept if nothing(case, found[kept], name)}
+    return [replace(c, in_explanation=c.in_explanation and c.effect not in hollow) for c in causes]
 
 
 def of_any_day(case: Case, found: Found) -> tuple[str, ...]:

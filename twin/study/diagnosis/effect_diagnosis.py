@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.effects import of_ship
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.inputs import INPUTS
@@ -93,7 +94,7 @@ def diagnose(
         "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],
         "calibrated": bool(references) or noise_model_of(ship) is not None,
-        "learned_since": [] if references else learned_since(case.model, case.catalogue),
+        "learned_since": [] if references else learned_since(case.model, of_ship(ship)),
         "data_checks": checks,
         "facts": considered.facts.as_json(),
     }
