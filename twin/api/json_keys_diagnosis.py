@@ -81,7 +81,7 @@ DIAGNOSE = (
         "weather[].*",
         "",
         "today's water and weather: effect, belongs_to, probability, parameters, typical_force and stream "
-        "as in `candidates[]`",
+        "as in `candidates[]`; beyond_file: name, value, sd and unit of what the ship file has otherwise",
         FACTS,
     ),
     JsonKey("facts.*", "", "the facts, those that decide and those that explain (facts.py)", FACTS),

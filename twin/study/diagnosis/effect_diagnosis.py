@@ -17,6 +17,7 @@ from twin.recording.voyage import Voyage
 from twin.study.diagnosis.against_healthy import healthy_in_words, rarity
 from twin.study.diagnosis.answer import SearchAnswer, answer
 from twin.study.diagnosis.assemble import assemble, unjudged_because
+from twin.study.diagnosis.beyond_file import beyond_file
 from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of_unknown
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.consider import Considered, joint_significance
@@ -235,11 +236,14 @@ def _weather(told: SearchAnswer, name: str, probability: float) -> dict[str, Any
         flow = SCENARIOS[weighed[0].scenario].flow * case.noise_model.flow * float(case.model.ship.U_0)
         return out | {
             "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
+            "beyond_file": [],
             "typical_force": None,
             "stream": [],
         }
+    numbers = parameters(case, best.posterior, name)
     return out | {
-        "parameters": parameters(case, best.posterior, name),
+        "parameters": numbers,
+        "beyond_file": beyond_file(case.model.ship, name, numbers),
         "typical_force": typical_force(case, best, name),
         "stream": set_and_rate(case, best, name),
     }

@@ -82,6 +82,12 @@ def weather_lines(result: dict[str, Any]) -> list[str]:
         likely = w["probability"] >= SOME
         usual = "" if likely else " (allowed for: no more than any day brings)"
         lines.append(f"{percent(w['probability']) if likely else '':>6}  {w['effect']}: {_numbers(w)}{usual}")
+        if beyond := w.get("beyond_file"):
+            filed = ", ".join(f"{p['name']} {num(p['value'], 3)} +- {num(p['sd'])}" for p in beyond)
+            lines.append(
+                f"        the ship file has {filed}: today's is beyond that, and what is told as "
+                f"{w['effect']} may be something else that acts like it"
+            )
     path, causes = result["path"], result["candidates"] + result["resembles"]
     if path["error_without"] is not None and not causes:
         lines.append(
