@@ -83,7 +83,7 @@ def test_a_climb_never_ends_where_the_voyages_are_less_probable_than_where_it_be
 
 def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
     mine, z = rows(case, "Loading"), np.zeros(len(case.effects))
-    z[mine] = [-1e6, 0.0, 0.0]
+    z[mine[0]] = -1e6  # mass
     here = about(case, np.zeros_like(z), mine, [case.effects[i] for i in mine])[1]
     wild = [replace(line, F=line.F * 1e8) for line in here]
     assert (
