@@ -21,7 +21,6 @@ from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import accelerations
 from twin.study.reference.evidence import posterior
 
-USUAL = "usual"  # scenario of a day as the references were
 # of the mean force, that may come and go [1]: a grid by half octaves, the likeliest counts; not fitted
 SHARES = (0.5, 0.7, 1.0, 1.4)
 
@@ -45,7 +44,7 @@ def log_bayes_factor(case: Case, found: Found) -> float | None:
     forces = [_of(case, own, line) for line in lines]
     if not any(map(np.any, forces)):
         return None
-    rough = case.scenarios(list(dict.fromkeys((USUAL, found.hypothesis.scenario))), found.doubt)
+    rough = case.scenarios(list(dict.fromkeys(("usual", found.hypothesis.scenario))), found.doubt)
     calm = [replace(each, white=case.white) for each in rough]
 
     def evidence(share: float, noise_models: Sequence[NoiseModel]) -> float:
