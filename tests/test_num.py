@@ -72,7 +72,7 @@ def test_the_marks_of_an_axis_are_told_from_each_other(marks, said):
 
 
 def test_a_share_is_told_in_whole_per_cent():
-    assert (percent(0.854), percent(1.0)) == ("85 %", "100 %")
+    assert (percent(0.854), percent(1.0), percent(-0.004)) == ("85 %", "100 %", "0 %")
 
 
 def by_general_format(path):

@@ -50,8 +50,8 @@ def on_axis(marks: Sequence[float]) -> list[str]:
 
 
 def percent(share: float) -> str:
-    """A share or a probability, in whole per cent."""
-    return f"{100.0 * share:.0f} %"
+    """A share or a probability, in whole per cent; one that rounds to nothing has no sign."""
+    return f"{100.0 * share:z.0f} %"
 
 
 def readable(number: Mapping[str, Any]) -> dict[str, Any]:

@@ -114,6 +114,7 @@ DIAGNOSE = (
     JsonKey("floor.sensor_factor", "-", "factor on the readings' scatter"),
     JsonKey("floor.temper", "-", "what the log likelihood is divided by"),
     JsonKey("voyages[]", "", "names of the voyages"),
+    JsonKey("calibrated_on[]", "", "of them those that the ship was calibrated on", "there are some"),
     JsonKey("references[]", "", "names of the reference voyages", "some were given"),
     JsonKey("calibrated", "", "whether the ship was calibrated, or reference voyages were given"),
     JsonKey(

@@ -11,6 +11,7 @@ from twin.commands.verb_output import answer, lines_to, progress
 from twin.live.learning.residual import load as load_residual
 from twin.physics.ship import load
 from twin.recording.read import read_voyage
+from twin.study.reference.sailed import own_references
 
 EPILOG = """Verdicts: missing (named, lasting causes first, with size and interval, and with what cannot be
 told from it), nothing_missing, unknown (something is there that no effect of the catalogue explains;
@@ -42,7 +43,12 @@ def run(args: argparse.Namespace) -> int:
     voyages, reference = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
     found = diagnose(ship, voyages, reference=reference, progress=progress)
     files = {"ship": args.ship, "voyages": args.voyages}
-    found = found.with_keys(command=command_of(args), verdict_text=found.sentence, files=files)
+    found = found.with_keys(
+        command=command_of(args),
+        verdict_text=found.sentence,
+        files=files,
+        calibrated_on=own_references(ship, voyages, args.voyages),
+    )
     if args.identifiability or args.residual:
         found = found.with_identifiability(args.residual or None)
     answer(args, found)

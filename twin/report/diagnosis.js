@@ -18,7 +18,7 @@ function rankingSection() {
   const missing = (RESULT.answer || {}).lasting || RESULT.missing || [];
   if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));
   const words = (x) => (typeof x === "string" ? x : [x.effect, x.why || (x.lacks || x.not_measured || []).map((n) => `no ${n}`).join(", ")].filter(Boolean).join(": "));
-  for (const [key, said] of [["not_judged", "Could not be judged: "], ["as_on_references", "No stronger than on the reference voyages, allowed for and not called missing: "], ["not_visible", "Too small to be seen in these voyages, even at a plausible size: "], ["learned_since", "Newer than the ship's calibration, and named less surely until it is calibrated again: "]]) {
+  for (const [key, said] of [["calibrated_on", "The ship was calibrated on this, so that a fault it had then is part of the model: "], ["not_judged", "Could not be judged: "], ["as_on_references", "No stronger than on the reference voyages, allowed for and not called missing: "], ["not_visible", "Too small to be seen in these voyages, even at a plausible size: "], ["learned_since", "Newer than the ship's calibration, and named less surely until it is calibrated again: "]]) {
     if ((RESULT[key] || []).length) out.push(el("p.note", { style: { marginTop: "8px" } }, said + RESULT[key].map(words).join("; ")));
   }
   return section("Which effect is missing", "judged together; forces are typical of these voyages", ...out);

@@ -26,7 +26,7 @@ from twin.studio.looked import looked, write_result
 from twin.studio.project import text_of
 from twin.studio.verbs import command_of
 from twin.study.prediction.openloop import HORIZONS_S
-from twin.study.reference.sailed import Sailed, read_all
+from twin.study.reference.sailed import Sailed, own_references, read_all
 from twin.study.track.track import Track
 
 Request = dict[str, Any]
@@ -75,6 +75,7 @@ def diagnose(asked: Request, job: Path, tell: Progress) -> None:
     done = judged(voyages, ship, references, tell)
     result = done.result | {
         "command": command_of(asked),
+        "calibrated_on": own_references(ship, voyages, asked["voyages"]),
         "verdict_text": done.result["sentence"],
         "files": {"ship": asked["ship"], "voyages": asked["voyages"]},
     }

@@ -203,3 +203,11 @@ def test_a_cause_is_named_beside_the_weather_of_an_ordinary_day(tanker, voyages)
     )
     assert all(0.0 < c["probability"] <= 0.99 for c in result["candidates"]) and result["reason"] == "named"
     assert result["rivals"][0]["log_bayes_factor"] == 0.0 and len(result["rivals"]) > 1
+
+
+def test_a_voyage_that_the_ship_was_calibrated_on_is_said_to_be_one(monday):
+    """Expected: nothing of it beside a later voyage, a line above the verdict beside its own."""
+    assert monday["calibrated_on"] == []
+    lines = terminal_lines(monday | {"calibrated_on": ["monday"]})
+    assert lines[0].startswith("monday: the ship was calibrated on this voyage")
+    assert lines[1:] == terminal_lines(monday)

@@ -85,6 +85,8 @@ def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_wit
     beside = reason({"zigzag 10/10": 3.0, "turning circles": 1.0}, "zigzag 10/10", model)
     assert "runs away" in alone and "next best" not in alone
     assert "next best: turning circles" in beside
+    said = to_sail({"separates": ["Wind", "Current"], "manoeuvre": "zigzag 10/10", "why": beside})
+    assert said.count("(") == said.count(")") == 1 and said.endswith(").")
 
 
 def test_the_usual_power_of_a_ferry_whose_file_knows_the_wind_is_that_without_wind():

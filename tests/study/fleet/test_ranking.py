@@ -101,3 +101,11 @@ def test_a_lasting_fault_of_a_ship_with_many_references_is_an_alarm():
     result = ranked([good, bad])
     assert result["over_months"]["alarms"] == ["bad"] and result["ships"][0]["over_months"]["alarm"]
     assert any("ALARM, M" in line for line in terminal_lines(result))
+
+
+def test_a_cause_that_takes_nothing_of_the_error_away_takes_no_less_than_nothing():
+    """Test: with the cause the error is 10.02 m in place of 10 m. Expected: 0 % of it, and not -0 %."""
+    result = ranked([of("a", named("a", "2026-01-01T00:00:00+00:00", with_it=10.02))])
+    assert result["ships"][0]["causes"][0]["share_of_error"] < 0.0
+    lines = "\n".join(terminal_lines(result))
+    assert " 0 %" in lines and "-0 %" not in lines

@@ -39,6 +39,7 @@ from twin.study.diagnosis.verdict import (
 )
 from twin.study.estimation.start import waves_on
 from twin.study.reference.nuisance import learned_since
+from twin.study.reference.sailed import own_references
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.jumps import jumps_on
 
@@ -91,6 +92,7 @@ def diagnose(
         "next_manoeuvre": _next(told, listed, progress),
         **_circumstances(told, [c["effect"] for c in listed]),
         "voyages": [v.name for v in voyages],
+        "calibrated_on": own_references(ship, voyages),
         "waves": waves_on(case.tracks),
         "jumps": jumps_on(case.tracks),
         "references": [v.name for v in references],

@@ -222,7 +222,7 @@ def reason(scores: Mapping[str, float], best: str, model: Model) -> str:
         f"next best: {rest[0]}, {_odds(scores[rest[0]])}" if rest else "in every other the model runs away"
     )
     what = MANOEUVRES[best].words(model)
-    return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two ({other})"
+    return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two; {other}"
 
 
 def sailed(case: Case, model: Model) -> dict[str, Track]:

@@ -20,7 +20,7 @@ SOME = 0.5  # probability from which a kind of weather is more than what any day
 
 def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
-    lines = [*whose(result["data_checks"]), result["sentence"]]
+    lines = [*whose(result["data_checks"]), *on_its_own(result["calibrated_on"]), result["sentence"]]
     lines += [""] if result["calibrated"] else [healthy_in_words(result), ""]
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
     resembling = [line for c in result["resembles"] for line in candidate_lines(c)]
@@ -53,6 +53,16 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
             f"{', '.join(result['not_visible'])}."
         )
     return lines
+
+
+def on_its_own(names: Sequence[str]) -> list[str]:
+    """A line that the ship was calibrated on these of the voyages; none where it was on none."""
+    if not names:
+        return []
+    return [
+        f"{', '.join(names)}: the ship was calibrated on {'these voyages' if names[1:] else 'this voyage'}, so "
+        "that a fault it had then is part of the model and does not show. Diagnose a later voyage."
+    ]
 
 
 def unrecorded(effects: Sequence[dict[str, Any]]) -> str:

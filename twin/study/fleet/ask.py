@@ -82,7 +82,7 @@ def _answered(job: Job) -> tuple[Row, list[Row]]:
     from twin.recording.read import read_voyage
     from twin.study.diagnosis.effect_diagnosis import diagnose
     from twin.study.prediction.open_loop_comparison import compare
-    from twin.study.reference.sailed import sailed, samples_hash
+    from twin.study.reference.sailed import own_references, sailed
 
     if job.version != twin.__version__:
         raise TwinError(f"this worker has shiptwin {twin.__version__}, not {job.version}. Install the same.")
@@ -100,16 +100,11 @@ def _answered(job: Job) -> tuple[Row, list[Row]]:
         "start_time_utc": voyage.meta.get("start_time_utc"),
         "duration_s": voyage.duration_s,
     }
-    if {job.voyage_sha256, samples_hash(voyage)} & _references(ship):
+    if own_references(ship, [voyage], [job.voyage_file]):
         return about | {"verdict": "reference", "sentence": "The ship was calibrated on it."}, []
     compared = compare([sailed(voyage, ship)], Model.of(ship)).result
     found = diagnose([voyage], ship).result
     return about | _of_voyage(compared, found), [_cause(c, found) for c in found["candidates"]]
-
-
-def _references(ship: Any) -> set[str]:
-    """Of the voyages that it was calibrated on the hash of the file, or of the samples where Python did."""
-    return {str(v.get("sha256")) for v in ship.notes["structural"].get("voyages", [])}
 
 
 def _of_voyage(compared: Mapping[str, Any], found: Mapping[str, Any]) -> Row:

@@ -4,7 +4,7 @@ can show."""
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from twin.num import as_given, num, readable
+from twin.num import as_given, num, percent, readable
 from twin.study.fleet.over_months import of_a_lasting_fault
 
 HEADS = ("", "ship", "verdict", "since", "size (95 %)", "trend (95 %)", "of the error", "over the months")
@@ -44,7 +44,7 @@ def _rows(ship: Mapping[str, Any]) -> list[tuple[str, ...]]:
             day(c["since"]),
             size(c["number"]),
             slope(c),
-            "" if c["share_of_error"] is None else f"{100.0 * c['share_of_error']:.0f} %",
+            "" if c["share_of_error"] is None else percent(c["share_of_error"]),
             shown if i == 0 else "",
         )
         for i, c in enumerate(ship["causes"])

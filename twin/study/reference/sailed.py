@@ -50,6 +50,14 @@ def samples_hash(voyage: Voyage) -> str:
     return known.hexdigest()
 
 
+def own_references(ship: Ship, voyages: Sequence[Voyage], files: Sequence[str] = ()) -> list[str]:
+    """Names of the voyages that the ship was calibrated on. Its file has the hash of their files, or of their
+    samples where Python calibrated it; `files`: where the voyages were read from, if they were."""
+    known = {str(v.get("sha256")) for v in ship.notes.get("structural", {}).get("voyages", [])}
+    hashes = [_sha256(path) for path in files] or [""] * len(voyages)
+    return [v.name for v, of in zip(voyages, hashes, strict=True) if {of, samples_hash(v)} & known]
+
+
 def read_all(paths: Sequence[str], ship: Ship, progress: Progress = silent) -> list[Sailed]:
     """Every voyage, ready; DataError names the file that cannot be used, or that was given twice. `progress`
     is told which file is read."""
