@@ -10,10 +10,13 @@ from twin.num import as_given
 from twin.recording.columns_seen import SeenColumns
 from twin.recording.formats.actuator_guess import ActuatorGuess
 from twin.recording.formats.guess import Guess, guess
+from twin.recording.formats.name_words import words_of
 from twin.recording.formats.signalk import PATHS
 from twin.recording.suggest_actuators import CONTROLS, entry_keys, several, shared_rudder, why_of
 from twin.recording.suggest_axes import axes
 from twin.recording.suggest_units import (
+    WATER,
+    WATER_ASIDE,
     place_format,
     speed_unit,
     turn_unit,
@@ -28,6 +31,11 @@ FRAMES = {
 }
 BODY, HEADING = ("surge_velocity_mps", "sway_velocity_mps"), "heading_true_north_deg"
 ENGINES = "the ENGINE's rate, not the shaft's: with a gear, factor = 1 / its ratio. CONFIRM"
+AHEAD = frozenset(("ahead", "longitudinal", "forward", "surge", "x"))
+ASIDE = frozenset(("starboard", "aside", "transverse", "athwart", "sway", "y"))
+FROM_THE_LOG = (
+    "positive to starboard; of a log that stands x m ahead of midship subtract r x (docs/import.md). CONFIRM"
+)
 BESIDE = ("magnetic_variation_deg", "plain_x", "plain_y")  # what other entries are made of
 
 
@@ -107,6 +115,7 @@ def best_guesses(files: Sequence[SeenColumns]) -> Taken:
     quaternion(files, out)
     at_home(out)
     one_wind(out)
+    log_aside(out)
     return out
 
 
@@ -119,6 +128,24 @@ def at_home(out: Taken) -> None:
             continue
         if found.channel in (*BODY, "yaw_rate_degps") and found.score >= out[found.channel][2].score:
             out[found.channel] = (home, name, found)
+
+
+def log_aside(out: Taken) -> None:
+    """Of a log with two axes, whose columns are called alike but for the axis, each by its own. One that says
+    starboard without one that says ahead beside it may be the log of that side."""
+    if WATER not in out:
+        return
+    seen, log, _ = out[WATER]
+    rest = frozenset(words_of(seen.said(log))[0]) - AHEAD - ASIDE
+    taken = {name for _, name, _ in out.values()} - {log}
+    found: Taken = {}
+    for name in filter(seen.has_numbers, seen.names):
+        words, unit = words_of(seen.said(name))
+        for channel, axis in ((WATER, AHEAD), (WATER_ASIDE, ASIDE)):
+            if name not in taken and axis.intersection(words) and rest == frozenset(words) - axis:
+                found[channel] = (seen, name, Guess(channel, unit or seen.units.get(name, ""), 1.0))
+    if len(found) == 2:
+        out |= found
 
 
 def own_path(name: str) -> Guess | None:
@@ -177,6 +204,8 @@ def describe(entry: Entry, channel: str, seen: SeenColumns, name: str, how: Gues
     elif how.unit and how.unit not in ("s",):
         entry.keys["unit"] = how.unit
         entry.why.append("unit by its name")
+    if channel == WATER_ASIDE:
+        entry.why.append(FROM_THE_LOG)
 
 
 def by_motion(entries: dict[str, Entry], taken: Taken, time: dict[str, Any]) -> None:

@@ -22,7 +22,7 @@ SPEEDS = {
     "velocity_north_mps": "velocity_east_mps",
 }
 HEADED = "heading_true_north_deg"
-WATER = "surge_velocity_through_water_mps"
+WATER, WATER_ASIDE = "surge_velocity_through_water_mps", "sway_velocity_through_water_mps"
 SPEED_UNITS = (("m/s", 1.0), ("kn", KNOT_MPS), ("km/h", 1 / 3.6), ("ft/s", 0.3048))
 RATE_UNITS = (("deg/s", 1.0), ("deg/min", 1.0 / 60.0), ("rad/s", DEG_PER_RAD))
 SLOW_TURNS = 30.0  # an unlabelled shaft that never turns faster is told in 1/s
@@ -217,8 +217,9 @@ def through_water(entries: dict[str, Any], taken: Taken, time: dict[str, Any], s
     ratio = float(np.median(ground[1]) * scale / np.median(np.abs(water[1])))
     unit, own = min(SPEED_UNITS[:2], key=lambda c: abs(np.log(max(ratio, 1e-6) / c[1])))
     if abs(np.log(max(ratio, 1e-6) / own)) < 0.3:
-        entries[WATER].keys["unit"] = unit
-        entries[WATER].why.append("unit by the speed over ground: CONFIRM")
+        for name in (n for n in (WATER, WATER_ASIDE) if n in entries and "unit" not in entries[n].keys):
+            entries[name].keys["unit"] = unit
+            entries[name].why.append("unit by the speed over ground: CONFIRM")
 
 
 def turn_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> None:

@@ -60,8 +60,8 @@ def on_its_own(names: Sequence[str]) -> list[str]:
     if not names:
         return []
     return [
-        f"{', '.join(names)}: the ship was calibrated on {'these voyages' if names[1:] else 'this voyage'}, so "
-        "that a fault it had then is part of the model and does not show. Diagnose a later voyage."
+        f"{', '.join(names)}: the ship was calibrated on {'these voyages' if names[1:] else 'this voyage'}, "
+        "so that a fault it had then is part of the model and does not show. Diagnose a later voyage."
     ]
 
 
