@@ -108,7 +108,7 @@ def test_the_instruments_of_a_voyage_are_told_on_a_page_and_drawn(monday):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     found = twin.instruments(None, monday)
-    assert "No instrument disagrees with the others." in words(found.page())
+    assert "No instrument disagrees with the others beyond its noise." in words(found.page())
     assert len(found.plot().get_yticklabels()) == sum(bool(n["cramer_rao_sd"]) for n in found.data["numbers"])
 
 

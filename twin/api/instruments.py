@@ -14,7 +14,15 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.instrument_estimate import Instruments, estimate
-from twin.study.instruments.instrument_lines import ambiguities, amount, as_json, either, terminal_lines
+from twin.study.instruments.instrument_lines import (
+    ambiguities,
+    amount,
+    as_json,
+    either,
+    nothing_new,
+    terminal_lines,
+)
+from twin.study.instruments.ship_file_numbers import as_filed
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -37,8 +45,15 @@ class InstrumentCheck(Result):
 
     @property
     def distinct(self) -> list[str]:
-        """Those of them that these voyages tell from every other: what `corrected` and `as_map` write."""
+        """Those of them that these voyages tell from every other: what `as_map` writes, and `corrected` but
+        for those that the ship's file has."""
         return [str(f["fault"]) for f in self.data["faults"] if not f["or_instead"]]
+
+    @property
+    def as_filed(self) -> list[str]:
+        """Those of them that the file of the ship they were asked with has, within 95 % of what these voyages
+        and the file leave open."""
+        return as_filed(self.ship, self.found)
 
     @property
     def effects(self) -> list[str]:
@@ -46,8 +61,9 @@ class InstrumentCheck(Result):
         return list(dict.fromkeys(f["effect"] for f in self.data["faults"] if f["effect"]))
 
     def corrected(self, ship: Ship) -> Ship:
-        """The ship with the `distinct` faults as effects of its instruments; what its effect cannot hold
-        is left out (`not_held`), and so is what these voyages do not tell from another (`ambiguous`)."""
+        """The ship with the `distinct` faults as effects of its instruments, but for those that its file has
+        as these voyages tell them; what its effect cannot hold is left out (`not_held`), and so is what these
+        voyages do not tell from another (`ambiguous`)."""
         return corrected(ship, self.found)[0]
 
     def not_held(self, ship: Ship) -> list[str]:
@@ -58,8 +74,8 @@ class InstrumentCheck(Result):
 
     def ambiguous(self) -> list[str]:
         """Of each fault that was seen and that these voyages do not tell from another: from which, and what
-        would tell them apart."""
-        return ambiguities(self.found)
+        would tell them apart; of those that the ship's file has (`as_filed`), nothing."""
+        return ambiguities(self.found, self.as_filed)
 
     def as_map(self) -> str:
         """The lines of a map that take the constants of `distinct` faults off. SettingsError when there are
@@ -68,7 +84,7 @@ class InstrumentCheck(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin instruments`."""
-        return terminal_lines(self.found, self.ship.effects if self.ship else ())
+        return terminal_lines(self.found, self.ship)
 
     def _rows(self) -> Any:
         return self.data["numbers"]
@@ -82,10 +98,8 @@ class InstrumentCheck(Result):
         from twin.report.result_page import Bars, PageTable, result_page
 
         faults = [f | {"called": f["effect"] or f["fault"]} for f in self.data["faults"]]
-        seen = (
-            ", ".join(either(f["fault"], f["or_instead"]) for f in faults)
-            or "No instrument disagrees with the others"
-        )
+        new = [f for f in faults if f["fault"] not in self.as_filed]
+        seen = ", ".join(either(f["fault"], f["or_instead"]) for f in new) or nothing_new(self.as_filed)
         columns = {"meaning": "number", "value": "value", "lo": "from", "hi": "to", "unit": "unit"}
         more = {"seen": "seen", "unseen_below": "else less than", "hard_to_tell_from": "hard to tell from"}
         bayes = {"log_bayes_factor_of_any": "log Bayes factor"}

@@ -41,8 +41,10 @@ def test_an_age_that_no_effect_holds_is_told_as_left_out():
     assert ship.effects == load("kvlcc2").effects and [e.unknown.name for e in left] == ["log_delay"]
 
 
-@pytest.mark.parametrize("value, kept", [(0.085, True), (0.11, False)])
-def test_what_the_ship_file_has_within_what_one_voyage_tells_stays_for_it_may_rest_on_more(value, kept):
+@pytest.mark.parametrize("value, kept", [(0.085, True), (0.103, True), (0.11, False)])
+def test_what_the_ship_file_has_within_its_own_doubt_and_the_voyages_stays_for_it_may_rest_on_more(
+    value, kept
+):
     ship, _ = corrected(load("kvlcc2"), found_of(log_scale=0.08))
     again, left = corrected(ship, found_of(log_scale=value))
     (effect,) = (e for e in again.effects if type(e).__name__ == "SpeedLogScale")

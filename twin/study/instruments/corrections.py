@@ -14,7 +14,8 @@ from twin.physics.effects import catalogue
 from twin.physics.ship import Ship
 from twin.study.estimation.rarity import P95
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
-from twin.study.instruments.instrument_lines import amount, as_filed
+from twin.study.instruments.instrument_lines import amount
+from twin.study.instruments.ship_file_numbers import as_filed
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 from twin.study.reference.derivatives import noted
 
@@ -26,17 +27,15 @@ OFFSETS = {
 
 
 def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
-    """The ship with the faults that were seen, and told from every other, as effects of its own (those of
-    which its file has what the readings tell as they are: it may rest on more voyages); and those of their
-    numbers that no effect of the catalogue holds, or that lie outside the box of theirs."""
-    numbers = _distinct(found)
+    """The ship with the faults that were seen, and told from every other, as effects of its own (those that
+    its file has as the readings tell them stay: it may rest on more voyages); and those of their numbers that
+    no effect of the catalogue holds, or that lie outside the box of theirs."""
+    filed = as_filed(ship, found)
+    numbers = [e for e in _distinct(found) if e.unknown.fault not in filed]
     known, names = effects_of_readings(), [r.name for r in found.readings]
     left = [e for e in numbers if e.unknown.name not in known]
-    filed = {type(e): e for e in ship.effects}
     for effect in dict.fromkeys(known[e.unknown.name] for e in numbers if e not in left):
         its = [e for e in numbers if known.get(e.unknown.name) is effect]
-        if effect in filed and as_filed(filed[effect], its):
-            continue
         told = {e.unknown.name: (e.value, e.sd) for e in its}
         try:
             ship = with_numbers(ship, told, all(found.own), names)

@@ -2,16 +2,15 @@
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
-import numpy as np
-
 from twin.num import READABLE, as_given, num
-from twin.physics.effect import Effect, SensorFault
-from twin.study.estimation.rarity import P95, deviations
+from twin.physics.ship import Ship
+from twin.study.estimation.rarity import P95
 from twin.study.instruments.findings import FAULT_BAYES_FACTOR, InstrumentEstimate, Instruments, instrument_of
 from twin.study.instruments.instrument_samples import Readings
+from twin.study.instruments.ship_file_numbers import as_filed, held
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, INDEX, UNKNOWNS, effect_of
 
 SHOWN = READABLE | {"-": ("%", 100.0)}
@@ -87,14 +86,19 @@ def _number(e: InstrumentEstimate) -> dict[str, Any]:
     }
 
 
-def terminal_lines(found: Instruments, effects: Sequence[Effect] = ()) -> list[str]:
-    """The whole answer, a line each; of a fault that is in the ship file (`effects`) already it says so."""
-    known = {type(e).__name__: e for e in effects}
-    out = []
+def terminal_lines(found: Instruments, ship: Ship | None = None) -> list[str]:
+    """The whole answer, a line each; a fault that the `ship`'s file has as the readings tell it is one line
+    behind the others."""
+    out, filed = [], as_filed(ship, found)
     for fault in found.faults:
-        out += _fault(found, fault) + _known(found, fault, known.get(effect_of(fault) or ""))
-    if not found.faults:
-        out.append("No instrument disagrees with the others beyond its noise.")
+        if fault not in filed:
+            out += _fault(found, fault) + _known(found, fault, ship)
+    if not out:
+        out.append(f"{nothing_new(filed)}.")
+    if ship:
+        out += [
+            f"{_called(f)}: as the ship file has it within 95 % ({_in_file(found, f, ship)})" for f in filed
+        ]
     out += ["", "stream, in the middle of each voyage"]
     out += [
         f"  {e.voyage}: {e.unknown.name.removeprefix('current_')} {_sized(e)}"
@@ -136,12 +140,23 @@ def either(fault: str, instead: Sequence[str]) -> str:
     return FAULTS[fault].words + _or(instead)
 
 
-def ambiguities(found: Instruments) -> list[str]:
+def nothing_new(filed: Sequence[str]) -> str:
+    """Where no fault is seen but these, which the ship file has: what to say of it."""
+    more = ", but for what the ship file has" if filed else ""
+    return f"No instrument disagrees with the others beyond its noise{more}"
+
+
+def as_it_is(fault: str) -> str:
+    """Of a fault that the ship file has as the readings tell it: why it is not written."""
+    return f"{FAULTS[fault].words} is as the ship file has it"
+
+
+def ambiguities(found: Instruments, filed: Collection[str] = ()) -> list[str]:
     """Of each fault seen that the voyages do not tell from another, and that therefore is written nowhere:
-    from which, and what would tell, a line each."""
+    from which, and what would tell, a line each; of one that the ship file has (`filed`), none."""
     out = []
     for fault, instead in found.instead.items():
-        if instead:
+        if instead and fault not in filed:
             turns = dict.fromkeys(FAULTS[x].turn for x in (fault, *instead))
             out.append(
                 f"these voyages do not tell {FAULTS[fault].words} from {_all(instead)}, and neither is "
@@ -158,18 +173,15 @@ def _all(faults: Sequence[str]) -> str:
     return " and ".join(FAULTS[f].words for f in faults)
 
 
+def _called(fault: str) -> str:
+    """A fault in words, with its effect of the catalogue."""
+    effect = effect_of(fault)
+    return FAULTS[fault].words + (f" ({effect})" if effect else "")
+
+
 def _fault(found: Instruments, fault: str) -> list[str]:
-    f, effect, numbers = (
-        FAULTS[fault],
-        effect_of(fault),
-        [e for e in found.estimates if e.unknown.fault == fault],
-    )
-    head = (
-        f"{f.words}"
-        + (f" ({effect})" if effect else "")
-        + _or(found.instead[fault])
-        + f": log Bayes factor {num(found.of_any[fault], 3)}"
-    )
+    f, numbers = FAULTS[fault], [e for e in found.estimates if e.unknown.fault == fault]
+    head = _called(fault) + _or(found.instead[fault]) + f": log Bayes factor {num(found.of_any[fault], 3)}"
     out = [head] + [f"  {e.unknown.name:<18}{_sized(e)}   {e.unknown.meaning}" for e in numbers]
     if found.instead[fault]:
         out.append(
@@ -188,26 +200,16 @@ def _fault(found: Instruments, fault: str) -> list[str]:
     return out + ([f"  shown by the residuals of {', '.join(falls)}"] if falls else [])
 
 
-def _known(found: Instruments, fault: str, effect: Effect | None) -> list[str]:
-    """What the ship file has of the fault's numbers already."""
-    held = effect.by_readings if effect else {}
-    of = {p.name: p.unit for p in (type(effect).params() if effect else ())}
-    its = [
-        held[e.unknown.name] for e in found.estimates if e.unknown.fault == fault and e.unknown.name in held
-    ]
-    told = [f"{name} {amount(float(getattr(effect, name)), of[name])}" for name in its]
-    agree = effect is not None and as_filed(effect, [e for e in found.estimates if e.unknown.fault == fault])
-    stays = " (within the 95 % of these readings: left as it is)" * agree
-    return [f"  in the ship file already: {', '.join(told)}{stays}"] if told else []
+def _known(found: Instruments, fault: str, ship: Ship | None) -> list[str]:
+    """What the ship file has of the fault's numbers already, other than these readings tell it."""
+    told = _in_file(found, fault, ship) if ship else ""
+    return [f"  in the ship file already: {told}"] if told else []
 
 
-def as_filed(effect: Effect, estimates: Sequence[InstrumentEstimate]) -> bool:
-    """Whether what an effect of the ship file has of these numbers lies within the 95 % of what the readings
-    tell of all of them together."""
-    held = effect.by_readings if isinstance(effect, SensorFault) else {}
-    its = [e for e in estimates if e.unknown.name in held]
-    off = np.array([(e.value - float(getattr(effect, held[e.unknown.name]))) / e.sd for e in its])
-    return len(its) > 0 and deviations(off, np.eye(len(its))) <= P95
+def _in_file(found: Instruments, fault: str, ship: Ship) -> str:
+    return ", ".join(
+        f"{h.parameter} {amount(h.value, h.estimate.unknown.unit)}" for h in held(ship, found, fault)
+    )
 
 
 def amount(value: float, unit: str) -> str:
