@@ -14,13 +14,14 @@ def found_of(instead=None, **numbers):
     """Faults that were seen with these numbers, whose standard deviation is a tenth; `instead`: fault -> what may
     be in its place."""
     unknowns = {name: UNKNOWNS[INDEX[name]] for name in numbers}
+    instead = instead or {}
     return SimpleNamespace(
         estimates=[
             SimpleNamespace(unknown=unknowns[name], value=value, sd=0.1 * abs(value), seen=True)
             for name, value in numbers.items()
         ],
         faults=tuple(u.fault for u in unknowns.values()),
-        instead={u.fault: (instead or {}).get(u.fault, ()) for u in unknowns.values()},
+        distinct=tuple(u.fault for u in unknowns.values() if u.fault not in instead),
         own=(False,),
         readings=(SimpleNamespace(name="zigzag"),),
     )

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import twin
 from tests.study.instruments.test_instruments import EVERY, HEADING, KEPT, late, voyage
 from tests.thorough import thorough
 from twin.physics.effects.sensor_delay import SensorDelay
@@ -49,6 +50,13 @@ def smoothed(columns, time_s):
     return columns | {U: out.real, V: out.imag}
 
 
+def slow_compass(columns, time_s):
+    """A heading that comes so late, and the velocity over ground turned by it."""
+    shown = late(columns, HEADING, time_s)
+    earth = (columns[U] + 1j * columns[V]) * np.exp(1j * np.radians(columns[HEADING] - shown[HEADING]))
+    return shown | {U: earth.real, V: earth.imag}
+
+
 def asked(*columns, frames=("course", "course", "course")):
     return on_references([of_voyage(voyage(*v)) for v in zip(columns, frames, strict=False)], 100.0)
 
@@ -82,17 +90,29 @@ def test_a_healthy_receiver_gives_the_ship_no_effect(days):
     assert "smoothing" not in found.record.faults and len(found.record.numbers["smoothing"].voyages) == 3
 
 
+def test_what_the_references_show_no_more_of_than_sound_instruments_from_day_to_day_is_not_the_ships(days):
+    """Test: on each reference a compass late by less than sound compasses seem to be on a voyage. Expected: its
+    age is kept, far clear of none by its scatter between these voyages alone; no effect of the ship's, and
+    `instruments` of the same voyages sees none."""
+    ship, slow = load("kvlcc2"), [slow_compass(d, 0.3) for d in days]
+    found = own_instruments([sailed(d) for d in slow], ship)
+    age = found.record.numbers["heading_delay"]
+    assert "heading_delay" in found.record.faults and age.value > 8.0 * age.next_sd
+    assert found.written == {} and found.ship.effects == ship.effects
+    assert "heading_delay" not in twin.instruments(ship, [voyage(d, "course") for d in slow]).faults
+
+
 @thorough
 def test_what_only_one_reference_shows_is_not_the_ships(days):
     found = asked(smoothed(days[0], 3.0), *days[1:])
     assert found.record.numbers["smoothing"].between > 0.5
-    assert established(found) == []
+    assert established(found, 100.0) == []
 
 
 @pytest.mark.parametrize("voyages", [1, 2])
 def test_fewer_than_three_references_establish_nothing(days, voyages):
     found = asked(*(smoothed(d, 3.0) for d in days[:voyages]))
-    assert "smoothing" in found.record.faults and established(found) == []
+    assert "smoothing" in found.record.faults and established(found, 100.0) == []
 
 
 @thorough

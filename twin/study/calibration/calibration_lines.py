@@ -61,8 +61,8 @@ def _errors(result: dict[str, Any]) -> list[str]:
 def _parts(result: dict[str, Any]) -> list[str]:
     """What became a part of the ship's model, each with its numbers; and weather that was too weak."""
     lines = [
-        "  the instruments show it on each reference voyage alike, whatever the ship is: now part of the "
-        f"model ({name}: {sizes_in_words(numbers)})"
+        "  the reference voyages together show more of it than sound instruments do from day to day, "
+        f"whatever the ship is: now part of the model ({name}: {sizes_in_words(numbers)})"
         for name, numbers in result["instruments"].items()
     ]
     lines += _part(

@@ -76,8 +76,7 @@ def effects_of_readings() -> dict[str, type[SensorFault]]:
 
 def _distinct(found: Instruments) -> list[InstrumentEstimate]:
     """The numbers of the faults that were seen and that the voyages tell from every other."""
-    faults = [f for f in found.faults if not found.instead[f]]
-    return [e for e in found.estimates if e.seen and e.unknown.fault in faults]
+    return [e for e in found.estimates if e.seen and e.unknown.fault in found.distinct]
 
 
 def _boxed(effect: Effect, ship: Ship) -> Effect:

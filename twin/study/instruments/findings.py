@@ -70,6 +70,11 @@ class Instruments:
     velocity_by: str  # what surely turned velocity over ground: "compass" or "receiver"; "": not known
     fit: KinematicFit
 
+    @property
+    def distinct(self) -> tuple[str, ...]:
+        """The faults seen that the voyages tell from every other."""
+        return tuple(f for f in self.faults if not self.instead[f])
+
     def of(self, name: str) -> InstrumentEstimate | None:
         """The estimate of that number (of the first voyage); None where the readings say nothing of it."""
         return next((e for e in self.estimates if e.unknown.name == name), None)

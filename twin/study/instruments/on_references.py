@@ -136,7 +136,7 @@ def on_references(readings: Sequence[Readings], length_m: float) -> OnReferences
         mine = [f for f in told if sets[f] == chosen]
         usual, far = _of_set(found, readings, chosen, mine)
         numbers |= usual
-        clear |= {f: d for f, d in far.items() if f in found.faults and not found.instead[f]}
+        clear |= {f: d for f, d in far.items() if f in found.distinct}
     record = KinematicRecord(found.clock, found.faults, all(found.own), numbers, found.velocity_by)
     return OnReferences(record, clear, found)
 
