@@ -17,6 +17,7 @@ from twin.study.instruments.instrument_estimate import Instruments, estimate
 from twin.study.instruments.instrument_lines import (
     ambiguities,
     amount,
+    as_it_is,
     as_json,
     either,
     nothing_new,
@@ -71,6 +72,15 @@ class InstrumentCheck(Result):
         unit."""
         left = corrected(ship, self.found)[1]
         return [f"{e.unknown.meaning} ({amount(e.value, e.unknown.unit)})" for e in left]
+
+    def not_written(self, ship: Ship | None) -> str:
+        """Why `corrected` would leave this ship as it is, or, where it is None, `as_map` has nothing to take
+        off; "" where there is something to write."""
+        if self.distinct and (ship is None or self.corrected(ship).effects != ship.effects):
+            return ""
+        out = self.ambiguous() + [as_it_is(f) for f in self.as_filed]
+        out += [f"no effect holds {left}" for left in (self.not_held(ship) if ship else ())]
+        return "; ".join(out) or "no fault of an instrument was seen"
 
     def ambiguous(self) -> list[str]:
         """Of each fault that was seen and that these voyages do not tell from another: from which, and what

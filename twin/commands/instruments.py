@@ -15,7 +15,6 @@ from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.recording.ship_file_writer import save
-from twin.study.instruments.instrument_lines import as_it_is
 
 EPILOG = """A circle to each side or a figure eight of ten minutes or more says most; rudder and shaft need
 not be recorded. -o: with --ship the ship file with what was seen as effects of its instruments; without, a
@@ -41,27 +40,16 @@ def run(args: argparse.Namespace) -> int:
     voyages = [read_voyage(p, by, sources_of(args.source), controls=False) for p in args.voyages]
     done, page = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress), lines_to(args)
     print("\n".join(done.text()), file=page)
-    new = ship is None or done.corrected(ship).effects != ship.effects
-    told = bool(done.distinct) and new
-    seen = told or bool(done.ambiguous())  # what a file or another voyage can still settle
-    if args.output and not told:
-        print(f"\n{args.output} was not written: {_why(ship, done)}.", file=page)
+    if (why := done.not_written(ship)) and args.output:
+        print(f"\n{args.output} was not written: {why}.", file=page)
     elif args.output:
         _write(args, ship, done)
         print("", wrote(args.output), *done.ambiguous(), sep="\n", file=page)
     if args.json:
         answer = with_request(done, args, ship=args.ship, voyages=args.voyages)
         whole.write_json(answer.to_dict(), args.json)
-    print("\nnext:", after_instruments(args, seen, told), file=page)
-    return 3 if args.output and not told else 0
-
-
-def _why(ship: Ship | None, done: InstrumentCheck) -> str:
-    """Why there is nothing to write."""
-    out = done.ambiguous() + [as_it_is(f) for f in done.as_filed]
-    if ship:
-        out += [f"no effect holds {left}" for left in done.not_held(ship)]
-    return "; ".join(out) or "no fault of an instrument was seen"
+    print("\nnext:", after_instruments(args, not why or bool(done.ambiguous()), not why), file=page)
+    return 3 if args.output and why else 0
 
 
 def _write(args: argparse.Namespace, ship: Ship | None, done: InstrumentCheck) -> None:

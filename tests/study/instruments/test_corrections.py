@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from twin.api.instruments import InstrumentCheck
 from twin.errors import SettingsError
 from twin.physics.ship import load
 from twin.study.instruments.corrections import as_map, corrected
@@ -21,6 +22,7 @@ def found_of(instead=None, **numbers):
             for name, value in numbers.items()
         ],
         faults=tuple(u.fault for u in unknowns.values()),
+        instead={u.fault: instead.get(u.fault, ()) for u in unknowns.values()},
         distinct=tuple(u.fault for u in unknowns.values() if u.fault not in instead),
         own=(False,),
         readings=(SimpleNamespace(name="zigzag"),),
@@ -40,6 +42,13 @@ def test_a_number_that_no_ship_can_have_is_left_out_and_the_others_are_written()
 def test_an_age_that_no_effect_holds_is_told_as_left_out():
     ship, left = corrected(load("kvlcc2"), found_of(log_delay=1.5))
     assert ship.effects == load("kvlcc2").effects and [e.unknown.name for e in left] == ["log_delay"]
+
+
+def test_where_no_effect_holds_what_was_seen_there_is_nothing_to_write_and_it_is_said():
+    data = {"faults": [{"fault": "log_delay", "or_instead": []}]}
+    found = InstrumentCheck(found_of(log_delay=1.5), data=data)
+    why = "no effect holds age of the speed through water (1.50 s)"
+    assert found.not_written(load("kvlcc2")) == why and found.not_written(None) == ""
 
 
 @pytest.mark.parametrize("value, kept", [(0.085, True), (0.103, True), (0.11, False)])

@@ -75,7 +75,7 @@ def established(asked: OnReferences, length_m: float) -> list[str]:
     """Faults that a ship file may hold as the ship's own: seen on all references together, told by three at
     least, clear of none on the next voyage too, by the scatter between them, and seen beside what sound
     instruments show otherwise from day to day. For what no formula here has of how this ship drifts may look
-    like a fault, and is the same on each of her voyages: no scatter between them tells of it. `length_m` of
+    like a fault, and is the same on each of its voyages: no scatter between them tells of it. `length_m` of
     the ship."""
     clear = [f for f, far in asked.clear.items() if far > LASTING_SE and _of_kinematics(f)]
     clear = [f for f in clear if _voyages_known(asked, f) >= LEAST_REFERENCES]
