@@ -11,7 +11,7 @@ from tests import command_lines
 from twin import whole
 from twin.cli import main
 from twin.commands.story import SHIP
-from twin.errors import TwinError
+from twin.errors import SettingsError, TwinError
 
 
 def test_what_was_there_is_replaced_and_nothing_else_stays(tmp_path):
@@ -137,3 +137,10 @@ def test_what_is_read_or_written_already_is_not_written_over(words, said, tmp_pa
 
 def test_both_answers_may_go_to_one_device():
     whole.promised(Namespace(json=os.devnull, report=os.devnull, ship="kvlcc2", output=None))
+
+
+def test_a_bench_may_have_paths_and_a_number_of_voyages(tmp_path):
+    out = tmp_path / "m.json"
+    whole.promised(Namespace(json=out, report=tmp_path / "m.html", voyages=3))
+    with pytest.raises(SettingsError, match="would be written there, too"):
+        whole.promised(Namespace(json=out, report=out, voyages=3))

@@ -26,7 +26,7 @@ def promised(args: argparse.Namespace) -> None:
     where it is to be; SettingsError when it is one that is read, or that another output is written to."""
     told, outputs = vars(args), dict[str, str]()
     for name, option in OUTPUTS.items():
-        path = told.get(name) or "-"
+        path = str(told.get(name) or "-")
         if path == "-":
             continue
         option = option or args.page_option
@@ -44,9 +44,10 @@ def _alone(option: str, path: str, outputs: Mapping[str, str], told: Mapping[str
         if _shared(path, written):
             raise SettingsError(f"{option} {path}: {other} would be written there, too. Choose another name.")
     for name in READ:
-        files = told.get(name) or ()
+        asked = told.get(name)
         better = (option, name) == ("-o", "ship") and "force" in told
-        for kept in [files] if isinstance(files, str) else files:
+        files = asked if isinstance(asked, list | tuple) else [asked]
+        for kept in (str(file) for file in files if isinstance(file, str | Path)):  # a bench's are a number
             if os.path.exists(kept) and _shared(path, kept) and not (better and told["force"]):
                 forced = ", or write over it with --force" * better
                 raise SettingsError(

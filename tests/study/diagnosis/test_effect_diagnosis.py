@@ -123,10 +123,10 @@ def test_what_is_named_stands_before_what_acts_like_it(diagnosed):
 @thorough
 def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
     """Test: a tank of an eighth of its mass, forward or aft, whose liquid swings aside. Expected: unknown, no
-    name, and what it looks like."""
+    name, and what it looks like first."""
     result = diagnose([voyages["Sloshing"]], tanker).result
     assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(terminal_lines(result))
-    (like,) = result["resembles"]
+    like, *_ = result["resembles"]
     share, *_ = like["parameters"]
     assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
 
