@@ -118,7 +118,7 @@ DIAGNOSE = (
     JsonKey("references[]", "", "names of the reference voyages", "some were given"),
     JsonKey("calibrated", "", "whether the ship was calibrated, or reference voyages were given"),
     JsonKey(
-        "learned_since[]", "", "causes that the ship's calibration knew not, or not with all numbers", "older"
+        "learned_since[]", "", "causes that the ship's calibration did not know, or not wholly", "it is older"
     ),
     *WAVES_AND_JUMPS,
     JsonKey("identifiability.*", "", "what a voyage can tell at all", "--identifiability"),

@@ -223,8 +223,8 @@ def _from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
 
 
 def learned_since(model: Model, catalogue: dict[str, type[Effect]]) -> list[str]:
-    """Causes that the calibration in the ship's file knew not, or not with all their numbers: it was of an
-    earlier version, or before a package brought them. None where the ship was never calibrated."""
+    """Causes that the calibration in the ship's file did not know, or not with all their numbers: it was of
+    an earlier version, or before a package brought them. None where the ship was never calibrated."""
     known = set(model.ship.notes.get("structural", {}).get("labels", ()))
     by_fit = [u for u in lasting(model, catalogue) if not catalogue[u.owner].kinematic]
     return list(dict.fromkeys(u.owner for u in by_fit if known and u.label not in known))
