@@ -46,6 +46,12 @@ SUPERSTRUCTURE_SHARE = (
 )
 
 
+def _beyond(derivative: str) -> float:
+    """A number of the load: what one hull's derivative has beyond regressions over many."""
+    doc = f"{derivative} beyond what the regressions say, as a share of it"
+    return param(0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc=doc)
+
+
 class Loading(Force):
     """The ship is loaded otherwise than the model believes: mass, draught or trim differ, so it answers
     slower or quicker."""
@@ -73,24 +79,12 @@ class Loading(Force):
         doc="shift of the centre of gravity, ahead positive; with the trim that follows, so that a loading "
         "computer's number is near it",
     )
-    Y_vdot: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="Y_vdot beyond what the regressions say, as a share of it"
-    )
-    N_rdot: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="N_rdot beyond what the regressions say, as a share of it"
-    )
-    Y_uv: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="Y_uv beyond what the regressions say, as a share of it"
-    )
-    Y_ur: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="Y_ur beyond what the regressions say, as a share of it"
-    )
-    N_uv: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="N_uv beyond what the regressions say, as a share of it"
-    )
-    N_ur: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.1, doc="N_ur beyond what the regressions say, as a share of it"
-    )
+    Y_vdot: float = _beyond("Y_vdot")
+    N_rdot: float = _beyond("N_rdot")
+    Y_uv: float = _beyond("Y_uv")
+    Y_ur: float = _beyond("Y_ur")
+    N_uv: float = _beyond("N_uv")
+    N_ur: float = _beyond("N_ur")
 
     def alter(self, ship: S) -> S:
         m, k, x_G = ship.m * (1.0 + self.mass), 1.0 + self.draught, ship.x_G + self.x_G
