@@ -27,6 +27,7 @@ def asked(verdict, lasting=(), manoeuvre=None):
         "answer": {"lasting": list(lasting)},
         "next_manoeuvre": sail,
         "calibrated": True,
+        "calibrated_on": [],
     }
 
 
@@ -52,6 +53,8 @@ def test_what_was_named_is_added_and_where_nothing_is_missing_the_next_voyage_is
     assert after_diagnose(["a.mcap"], "s.toml", named).startswith("twin add HullFouling --ship s.toml")
     healthy = after_diagnose(["a.mcap"], "s.toml", asked("nothing_missing"))
     assert healthy.startswith("twin diagnose OTHER-DAY.mcap --ship s.toml") and "twin calibrate" in healthy
+    reference = asked("nothing_missing") | {"calibrated_on": ["a"]}
+    assert "calibrate" not in after_diagnose(["a.mcap"], "s.toml", reference)
 
 
 def test_every_next_command_takes_a_file_name_as_one_word_whatever_stands_in_it():

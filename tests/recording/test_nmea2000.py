@@ -126,6 +126,27 @@ def test_two_rudders_and_two_engines_of_one_source_are_two_series_in_canboats_js
     }
 
 
+def test_canboats_json_with_numbers_and_names_of_a_field_is_read_as_with_names_alone(tmp_path):
+    """Test: fields as the analyzer writes them with `-nv`. Expected: what they are with their names; the number,
+    where a field has no name."""
+    series = canboat_log(
+        tmp_path,
+        [
+            (127250, {"Heading": 200.0, "Reference": {"value": 1, "name": "Magnetic"}}),
+            (127488, {"Instance": {"value": 0, "name": "Single Engine or Dual Engine Port"}, "Speed": 800}),
+            (127488, {"Instance": {"value": 2, "name": None}, "Speed": 900}),
+            (130306, {"Wind Speed": 7.0, "Wind Angle": 30.0, "Reference": {"value": 2, "name": "Apparent"}}),
+        ],
+    )
+    assert {name: list(s.values) for name, s in series.items()} == {
+        "127250.3.heading_magnetic": [200.0],
+        "127488.3.engine_rate": [800.0],
+        "127488.3.engine_rate_2": [900.0],
+        "130306.3.apparent_wind_speed": [7.0],
+        "130306.3.apparent_wind_angle": [30.0],
+    }
+
+
 @pytest.mark.parametrize("scale", [1.0, np.pi / 180.0], ids=["deg", "rad"])
 def test_deviation_and_the_depth_of_the_transducer_are_added_in_canboats_json(tmp_path, scale):
     """Test: a heading that passes 360 deg only by its deviation. Expected: nobody takes radians for degrees."""

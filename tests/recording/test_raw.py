@@ -98,3 +98,8 @@ def test_year_to_second_in_columns_of_numbers_are_one_clock_by_their_format(tmp_
     v = read_voyage(path, by)
     assert v.meta["start_time_utc"] == "2026-11-25T23:59:30Z"
     np.testing.assert_allclose(v.time_s, [(stamps[k] - START).total_seconds() for k in keep], atol=1e-6)
+    holed = pd.DataFrame(table | rest).iloc[keep].astype({"minute": float})
+    holed.iloc[20, holed.columns.get_loc("minute")] = np.nan
+    holed.to_parquet(path)
+    beside = read_voyage(path, by)
+    assert beside.meta["start_time_utc"] == v.meta["start_time_utc"] and len(beside) == len(v) - 1

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from twin.errors import DataError
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 
@@ -58,3 +59,14 @@ def test_the_rounded_stamps_of_each_joined_table_are_rebuilt(tables, columns):
     assert v.time_s == pytest.approx(columns["time_s"], abs=0.1)
     for name in ("motion.csv", "controls.csv"):
         assert any(note.startswith(f"{name}: time stamps rebuilt") for note in v.meta["notes"])
+
+
+def test_a_joined_table_whose_clock_goes_back_is_refused_with_its_row(tables, columns):
+    """Test: the controls' clock is set back by 20 s in the middle. Expected: refused, as a single table is, with
+    the file and the line; a clock that goes back in none is taken."""
+    time_s = columns["time_s"].copy()
+    middle = time_s.size // 2
+    time_s[middle:] -= 20.0
+    with pytest.raises(DataError, match=rf"controls\.csv: line {middle + 2}: time goes back"):
+        read_voyage(tables({}, {"time_s": time_s}))
+    assert len(read_voyage(tables({}, {})))

@@ -52,6 +52,6 @@ def run(args: argparse.Namespace) -> int:
     if args.identifiability or args.residual:
         found = found.with_identifiability(args.residual or None)
     answer(args, found)
-    then = after_diagnose(args.voyages, args.ship, found.data, args.reference)
+    then = after_diagnose(args.voyages, args.ship, found.data, *args.reference)
     print(f"\nnext: {then}", file=lines_to(args))
     return 0

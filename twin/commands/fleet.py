@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.api.fleet import fleet
+from twin.commands.typed_again import command_of
 from twin.commands.verb_output import answer, lines_to, progress, typed
 from twin.study.fleet.spread import cores
 
@@ -37,9 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     found = fleet(args.fleet, args.folder, workers=args.workers, scheduler=args.scheduler, progress=progress)
-    command = typed("fleet", args.fleet, "-o", args.folder)
     rows = str(Path(args.folder) / "rows.parquet")
-    answer(args, found.with_keys(command=command, rows=rows))
+    answer(args, found.with_keys(command=command_of(args), rows=rows))
     print(f"\n{rows} has every row\nnext: {_next(args, found.data['ships'])}", file=lines_to(args))
     return 0
 
@@ -48,6 +48,6 @@ def _next(args: argparse.Namespace, ships: Sequence[Mapping[str, Any]]) -> str:
     """The first ship that was judged is looked at."""
     first = next((s for s in ships if s["latest"]), None)
     if first is None:
-        again = typed("fleet", args.fleet, "-o", args.folder)
-        return f"add voyages to judge (a ship is not judged by those that it was calibrated on), then {again}"
+        judged = "a ship is not judged by those that it was calibrated on"
+        return f"add voyages to judge ({judged}), then {command_of(args)}"
     return typed("diagnose", first["latest"]["file"], "--ship", first["file"], "--report", "diagnose.html")

@@ -41,14 +41,12 @@ def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) 
     return fit + typed("diagnose", *voyages, "--ship", by, "--report", "diagnose.html")
 
 
-def after_diagnose(
-    voyages: Sequence[str], ship: str, result: Mapping[str, Any], reference: Sequence[str] = ()
-) -> str:
+def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any], *references: str) -> str:
     """What to sail, to ask together or to add; a calibration before all, where the ship never had one."""
     if not result["calibrated"]:
         return after_import(voyages[0], ship)
     of, then = ("--ship", ship), result["next_manoeuvre"]
-    again = (*of, *given("--reference", *reference))
+    again = (*of, *given("--reference", *references))
     sail = then and f"sail {then['manoeuvre']}, then twin diagnose with that voyage too"
     now = "" if sail else typed("compare", *voyages, *of, "--report", "compare.html")
     if lasting := result["answer"]["lasting"]:
@@ -56,5 +54,6 @@ def after_diagnose(
     elif result["verdict"] in ("undecided", "unknown") and len(voyages) < 3:
         now = f"{typed('diagnose', *voyages, 'OTHER-DAY.mcap', *again)}: voyages together tell more than one"
     elif result["verdict"] == "nothing_missing":
-        now = f"{typed('diagnose', 'OTHER-DAY.mcap', *again)}; what sailed so is good for twin calibrate, too"
+        new = "" if result["calibrated_on"] else "; what sailed so is good for twin calibrate, too"
+        now = typed("diagnose", "OTHER-DAY.mcap", *again) + new
     return "; or now: ".join(filter(None, (sail, now)))

@@ -11,7 +11,7 @@ def command_of(args: argparse.Namespace) -> str:
     """The command that gives a result again: what was typed, less where the answer goes."""
     answers = argparse.ArgumentParser(add_help=False)
     answers.add_argument("--json")
-    answers.add_argument("--report")
+    answers.add_argument("--report", "--html")
     return typed(*answers.parse_known_args(args.typed)[1])
 
 

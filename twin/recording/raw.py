@@ -78,7 +78,8 @@ def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColu
         return clock_from_numbers(path, sum_of([table.numbers[s] for s in stamps], spec.factors), spec)
     joint = " " if spec.format else "T"
     words = [
-        joint.join(parts) for parts in zip(*stamps_as_text(path, table, stamps, spec.format), strict=True)
+        joint.join(parts) if all(parts) else ""
+        for parts in zip(*stamps_as_text(path, table, stamps, spec.format), strict=True)
     ]
     return clock_from_text(path, table.lines, words, spec)
 
@@ -88,7 +89,7 @@ def stamps_as_text(path: Path, table: Table, stamps: tuple[Key, ...], form: str)
     table keeps the day, for the time of day stands beside it as text. DataError: they are no moments, or
     `form` has not a part for each column."""
     if all(s in table.numbers for s in stamps):
-        return [[f"{x:.0f}" if x == np.rint(x) else repr(float(x)) for x in table.numbers[s]] for s in stamps]
+        return [list(map(_as_written, table.numbers[s])) for s in stamps]
     forms = form.split(" ") if form else ["%Y-%m-%d"] * len(stamps)
     kept = {s: table.numbers[s] for s in stamps if s in table.numbers}
     if kept and (len(forms) != len(stamps) or any(np.any(x < EPOCH_S) for x in kept.values())):
@@ -102,9 +103,15 @@ def stamps_as_text(path: Path, table: Table, stamps: tuple[Key, ...], form: str)
     return [(days if s in kept else table.texts)[s] for s in stamps]
 
 
+def _as_written(x: float) -> str:
+    """A part of a date as text; "" of an empty cell."""
+    return "" if np.isnan(x) else f"{x:.0f}" if x == np.rint(x) else repr(float(x))
+
+
 def parts_of_a_date(table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> bool:
     """Whether columns of numbers are year, month, day and so on, which the format of a text tells apart."""
-    return bool(spec.format) and len(stamps) > 1 and all(np.all(table.numbers[s] < EPOCH_S) for s in stamps)
+    numbers = [table.numbers[s] for s in stamps]
+    return bool(spec.format) and len(stamps) > 1 and not any(np.any(x >= EPOCH_S) for x in numbers)
 
 
 def opened_table(kind: Format, path: Path) -> Packed:

@@ -20,7 +20,7 @@ from twin.recording.headers import column_names, overlaid, own_names
 from twin.recording.mapping import Column, Map, TimeColumn
 from twin.recording.raw import Raw, opened_table, read_clock, stamps_of, table_of, through
 from twin.recording.table import Table
-from twin.recording.timebase import TimeAxis, clock_from_numbers, moment_of, rebuilt
+from twin.recording.timebase import TimeAxis, clock_from_numbers, moment_of, rebuilt, refuse_backwards
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".gz", ".parquet", ".feather", ".arrow", ".xlsx")
 SAYS = "several tables"
@@ -140,6 +140,7 @@ def add(signals: Signals, part: Part, by: Map, notes: list[str], lost: list[str]
     if spec.rebuild is not False and known.any():
         own[known], how = rebuilt(part.path, own[known], spec.rebuild)
         said.append(how)
+    refuse_backwards(part.path, table.lines[known], own[known])
     time_s = own + moment_of(clock.start_time_utc)
     notes += [f"{part.path.name}: {one}" for one in said]
     lost += [f"{part.path.name}: {one}" for one in table.lost]

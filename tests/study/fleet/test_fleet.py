@@ -93,6 +93,7 @@ def test_the_command_writes_the_json_and_the_page_of_the_result(finished, asked)
     assert {k: v for k, v in found.items() if k not in keys} == {
         k: v for k, v in asked[0].to_dict().items() if k not in keys
     }
+    assert found["command"].endswith("--workers 2") and found["command"].startswith("twin fleet ")
     assert "<title>" in (finished[1] / "f.html").read_text()
 
 

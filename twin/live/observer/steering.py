@@ -6,6 +6,7 @@ from copy import copy
 from typing import Protocol
 
 from twin.physics.effect import Lag
+from twin.physics.effects.of_actuator import OfActuator
 from twin.physics.state import Situation
 
 
@@ -130,6 +131,6 @@ def gears_of(lags: tuple[Lag, ...], rest: Mapping[str, float]) -> RudderGear | A
     gears = dict[str, list[Gear]]()
     for lag in lags:
         for name in rest:
-            if name.partition(".")[0] in getattr(lag, "names", ()):
+            if isinstance(lag, OfActuator) and name.partition(".")[0] in lag.names:
                 gears.setdefault(name, []).append(Gear(lag))
     return ActuatorGears(gears, rest)

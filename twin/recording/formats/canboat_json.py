@@ -54,7 +54,7 @@ def read(path: Path) -> Signals:
             if isinstance(message, dict) and "units" in message and "pgn" not in message:
                 units = str(message["units"])
                 continue
-            pgn, fields = int(message["pgn"]), message["fields"]
+            pgn, fields = int(message["pgn"]), by_name(message["fields"])
             t = stamp(str(message.get("timestamp", "")))
             found = list(parts(pgn, fields)) if t is not None else []
         except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
@@ -74,6 +74,16 @@ def read(path: Path) -> Signals:
                 largest[name] = max(value, largest.get(name, value))
     in_degrees(out, largest, units)
     return out.finish()
+
+
+def by_name(fields: dict[str, Any]) -> dict[str, Any]:
+    """Fields of which some were written with both their number and its name (`-nv`), each as its name, or as
+    the number where it has none."""
+    return {field: _name_of(raw) if isinstance(raw, dict) else raw for field, raw in fields.items()}
+
+
+def _name_of(raw: dict[str, Any]) -> Any:
+    return raw.get("value") if raw.get("name") is None else raw["name"]
 
 
 def parts(pgn: int, fields: dict[str, Any]) -> Iterator[tuple[str, bool, float]]:

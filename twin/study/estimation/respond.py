@@ -13,6 +13,7 @@ from twin.physics.actuators import KeptForces
 from twin.physics.dual import Dual
 from twin.physics.effect import Lag
 from twin.physics.effects import of_role
+from twin.physics.effects.of_actuator import OfActuator
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.track.track import READINGS, STATE, Track
@@ -162,16 +163,21 @@ def _lagged(track: Track, model: Model) -> tuple[np.ndarray, Mapping[str, np.nda
     if gears not in track.rudder:
         if len(track.rudder) >= GEARS:
             track.rudder.clear()
-        of_rudder = [g for g in gears if not getattr(g, "names", ())]
+        of_rudder = [g for g in gears if not _moved_by(g)]
         orders = track.orders
         for gear in gears if orders else ():
             assert orders is not None
-            late = getattr(gear, "names", ())
+            late = _moved_by(gear)
             orders = {
                 k: _behind(track, [gear], x) if k.partition(".")[0] in late else x for k, x in orders.items()
             }
         track.rudder[gears] = (_behind(track, of_rudder, track.delta), orders)
     return track.rudder[gears]  # type: ignore[no-any-return]
+
+
+def _moved_by(gear: Lag) -> tuple[str, ...]:
+    """The actuators that a gear moves; none of the rudder's own."""
+    return gear.names if isinstance(gear, OfActuator) else ()
 
 
 def _behind(track: Track, gears: Sequence[Lag], values: np.ndarray) -> np.ndarray:
