@@ -113,7 +113,7 @@ def test_the_next_command_repeats_what_the_answer_rests_on():
     """Expected: the reference voyages of a diagnosis; the map, the instruments and the frame of a check of
     instruments."""
     for verdict in ("undecided", "nothing_missing"):
-        said = after_diagnose(["a.mcap"], "s.toml", asked(verdict), ["ref 1.mcap", "ref-2.mcap"])
+        said = after_diagnose(["a.mcap"], "s.toml", asked(verdict), "ref 1.mcap", "ref-2.mcap")
         assert "--ship s.toml --reference 'ref 1.mcap' ref-2.mcap" in said
     more = {"map": "m.toml", "source": ["gnss", "heading=gyro"], "velocity_by": "course"}
     said = after_instruments(instruments_of(["a.csv"], "s.toml", None, **more), True, False)
