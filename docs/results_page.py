@@ -218,12 +218,13 @@ def decision_page(text: str, rows: Sequence[CaseRow]) -> str:
 
 def answers() -> list[dict[str, Any]]:
     """The fleet's answers, as rows of `python -m bench.fleet run`."""
-    return kept_rows.read(keep_answers.TABLE, keep_answers.FACTS)
+    return kept_rows.read(*keep_answers.FLEET)
 
 
 def judgement_page(rows: Sequence[Mapping[str, Any]]) -> str:
     """docs/results/judgement.md of these answers; what is written by hand at its end stays."""
-    return judgement(rows, json.loads(keep_answers.FIT.read_text())) + by_hand(JUDGEMENT_PAGE)
+    new = kept_rows.read(*keep_answers.NEW_SHIPS)
+    return judgement(rows, new, json.loads(keep_answers.FIT.read_text())) + by_hand(JUDGEMENT_PAGE)
 
 
 if __name__ == "__main__":

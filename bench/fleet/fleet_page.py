@@ -23,7 +23,7 @@ RIGHT = (
     "**Right**: every hidden cause of ship and instruments is named and no other; hidden weather is named or "
     "told; no cause is named on a healthy ship. **Its oracle gains**: the truth, fitted by the twin's own "
     "form of it, brings the open-loop error down by a tenth. Hidden weather is held against the best other "
-    "weather of the day (in answers of before 27 November 2026 against none, which is easier to gain on)."
+    "weather of the day."
 )
 BY_HAND = "## What it says"  # from this title on
 BINS = (0.05, 0.2, 0.5, 0.8, 0.9, 0.95, 1.0)
@@ -140,8 +140,9 @@ def head(rows: Sequence[Row]) -> list[str]:
         "and swell on every voyage, a third of it not recorded; instruments with faults of their own; two "
         "to six reference voyages; hulls in another form than the twin's, but for `modulus`, which is "
         "Norrbin's like the twin's core. Weather that is named or told as today's never counts against an "
-        "answer. Intervals: 95 % (Wilson). The rows, an answer each, are in [fleet.csv](fleet.csv), with the "
-        "facts of each in `fleet_facts.jsonl`; the last command makes the page of them:"
+        "answer. Intervals: 95 % (Wilson). The rows, an answer each, are in [fleet.csv](fleet.csv) and "
+        "[new-ships.csv](new-ships.csv), with the facts of each in a file beside it; the last command makes "
+        "the page of them:"
     )
     return [
         "# The decision on ships of many forms",
@@ -149,8 +150,10 @@ def head(rows: Sequence[Row]) -> list[str]:
         *wrap(about, 108),
         "",
         "```sh",
-        "python -m bench.fleet run FOLDER --seeds 0-7 --voyages 8 --workers 16   # and --seeds 12-13",
-        "python -m bench.fleet keep --first FOLDER",
+        "python -m bench.fleet run FOLDER --seeds 0-3 --voyages 8 --workers 2     # two hours",
+        "python -m bench.fleet keep FOLDER",
+        "python -m bench.fleet run OTHER --seeds 16-18 --voyages 8 --workers 2",
+        "python -m bench.fleet keep OTHER --new",
         "python docs/results_page.py",
         "```",
         "",

@@ -1,5 +1,5 @@
-"""docs/results/judgement.md, as far as it is made of the kept answers (keep_answers.py): all voyages with the
-latest answer to each; and the batches as they were answered when no fit had seen them."""
+"""docs/results/judgement.md, as far as it is made of the kept answers (keep_answers.py): of the fleet to
+which the probabilities are fitted, and of ships that no fit had seen."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,39 +16,38 @@ from bench.fleet.addition_proof import KEPT_ADDITIONS
 from bench.fleet.answer_score import Row, share
 from bench.fleet.decided_again import decided
 from bench.fleet.fleet_page import FIGURES, SHORT, cost, figures, head, in_detail, in_short, lines
-from bench.fleet.kept_rows import of_batch, together
 from bench.fleet.several_voyages import KEPT_TOGETHER
 from bench.fleet.voyage_plan import practice
 
 ADDED = (
-    "`twin add` of the lasting causes that were named on {voyages} voyages of {ships} ships, fitted to that "
-    "voyage and proved on two more with the same fault, on other days and courses; and proved by thirds of "
-    "the voyage itself (`--cross-validated`). Errors: open-loop position error at the longest horizon on the "
+    "Of the fleet of before 30 November 2026. `twin add` of the lasting causes that were named on {voyages} "
+    "voyages of {ships} ships, fitted to that voyage and proved on two more with the same fault, on other "
+    "days and courses; and proved by thirds of the voyage itself (`--cross-validated`). Errors: open-loop position error at the longest horizon on the "
     "two voyages, median (10 to 90 %); healthy: of the same ship file on the same days and courses with "
     "nothing wrong. Made by `python -m bench.fleet add FOLDER --keep`."
 )
 SEVERAL = (
-    "{cases} of these voyages asked alone, and together with one and two more of the same ship, on other "
-    "days and courses, with the same fault. Made by `python -m bench.fleet together FOLDER --kinds single "
+    "{cases} voyages of the fleet of before 30 November 2026 asked alone, and together with one and two more "
+    "of the same ship, on other days and courses, with the same fault. Made by `python -m bench.fleet together FOLDER --kinds single "
     "pair nothing --keep`; cases in the order of the ships until the time was over."
 )
 STRICTER = (4.0, 5.0, 6.0, 7.0, 8.0)  # SIGNIFICANT, about the one that stands
 
 
-def judgement(rows: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
-    """The page of these rows; `fit`: what the ships of the other families ask for (decision_fit.chosen)."""
-    every = together(rows)
-    read = decision_fit.with_facts(every)
+def judgement(rows: Sequence[Row], new: Sequence[Row], fit: Mapping[str, Mapping[str, Any]]) -> str:
+    """The page of these rows and those of `new` ships; `fit`: what the ships of the other families ask for
+    (decision_fit.chosen)."""
+    read, unseen = decision_fit.with_facts(rows), decision_fit.with_facts(new)
     fitted = decision_fit.fitted_lines(decision_fit.held_out(read, fit))
-    told = probability_fit.page_lines(probability_fit.fitted(probability_fit.examples(read)))
-    tables = [*_batches(rows, every), *_further(), *in_detail(every)]
+    told = probability_fit.fitted(probability_fit.examples(read), probability_fit.examples(unseen))
+    every = [*rows, *new]
+    tables = [*_figures(rows, new), *_further(), *in_detail(every)]
     tables += [*_practices([decided(r) for r in every]), *fitted, *_healthy(read), *_moved(read)]
-    return "\n".join([*head(every), *tables, *told, *cost(every)]) + "\n"
+    return "\n".join([*head(every), *tables, *probability_fit.page_lines(told), *cost(every)]) + "\n"
 
 
-def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
-    first, second, third, again = (of_batch(rows, asked) for asked in ("first", "blind", "third", "again"))
-    batches = (first, second, third, [decided(r) for r in every])
+def _figures(rows: Sequence[Row], new: Sequence[Row]) -> list[str]:
+    batches = [[decided(r) for r in rows], list(new), [*map(decided, rows), *new]]
     each = [figures(batch) for batch in batches]
     measured = [name for name in FIGURES if each[-1][name].n]
     body = [(name, FIGURES[name][0], *(of[name] for of in each)) for name in measured]
@@ -56,18 +55,14 @@ def _batches(rows: Sequence[Row], every: Sequence[Row]) -> list[str]:
         ("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", _intervals),
         ("causes with a posterior of 0.95 or more that are there", "", _sure),
     ):
-        body.append((name, goal, *(of(batch) for batch in (first, second, third, every))))
+        body.append((name, goal, *(of(batch) for batch in batches)))
     text = (
-        f"All {len(every)} voyages with the latest of their answers, as the table of today decides them: "
-        f"{len(again)} were asked again (when, and why: below). "
-        f"Beside them each batch as it was answered first: {len(first)} voyages, to which three thresholds "
-        f"were fitted afterwards; {len(second)} further voyages of the same ships, asked before anything was "
-        f"fitted to them; and {len(third)} of new ships, of which no fit had seen any. Nine voyages stand in "
-        "the first two batches."
+        f"{len(rows)} voyages of the ships to which the probabilities that are told are fitted, as the table "
+        f"of today decides them; {len(new)} of [new ships](new-ships.md), as they were answered when no fit "
+        "and no look had seen any; and both."
     )
-    columns = ("first", "second", "third")
-    titles = [f"{n} batch ({len(b)})" for n, b in zip(columns, batches, strict=False)]
-    return lines("Figures", text, ("", "goal", *titles, f"all ({len(every)})"), body)
+    titles = (f"ships of the fit ({len(rows)})", f"new ships ({len(new)})", f"both ({len(rows) + len(new)})")
+    return lines("Figures", text, ("", "goal", *titles), body)
 
 
 def _further() -> list[str]:

@@ -1,6 +1,6 @@
-"""The fleet's answers as they are kept in docs/results: fleet.csv, a row an answer, and fleet_facts.jsonl,
-the facts on which each rests (twin/study/diagnosis/facts.py), line for line; those that are false, 0, null or
-empty are left out.
+"""The fleet's answers as they are kept in docs/results: a table, a row an answer, and beside it the facts on
+which each rests (twin/study/diagnosis/facts.py), line for line; those that are false, 0, null or empty are
+left out.
 
 Rounded: sizes to five digits, posteriors to four, facts to three; no decision turned by it."""
 
@@ -15,15 +15,8 @@ from bench.fleet.answer_score import Row, answered_weather, posterior, right, tr
 from twin.study.diagnosis.facts import Cause, Facts, Left
 
 NONE: dict[Any, Any] = {bool: False, float: 0.0, float | None: None, tuple[str, ...]: []}  # facts by type
-TIMES = {  # when a voyage was asked
-    "first": "the first batch",
-    "blind": "the second batch, which no fit had seen",
-    "third": "the third batch: ships that no fit had seen",
-    "again": "later answers to voyages of either",
-}
 COLUMNS = (
     "voyage",
-    "asked",
     "family",
     "ship",
     "kind",
@@ -63,13 +56,12 @@ def _number(text: str) -> float | None:
     return float(text) if text else None
 
 
-def line(row: Row, asked: str) -> dict[str, str]:
-    """The row of fleet.csv of an answer. Hidden: each with its strength (1 is plain to see). Sizes: of each
+def line(row: Row) -> dict[str, str]:
+    """The row of an answer in the table. Hidden: each with its strength (1 is plain to see). Sizes: of each
     cause that is named and hidden its numbers in SI units, as estimate/low95/high95/truth."""
     oracle = row.get("oracle") or {}
     return {
         "voyage": row["key"],
-        "asked": asked,
         "family": row["family"],
         "ship": f"{row['family']}-{row['seed']}",
         "kind": row["kind"],
@@ -107,29 +99,13 @@ def _sizes(row: Row) -> dict[str, str]:
     return out
 
 
-def write(answers: Sequence[tuple[Row, str]], table: Path, facts: Path) -> None:
-    """Both files of these answers and when each was asked (TIMES)."""
-    _put([(line(row, asked), _facts_line(row)) for row, asked in answers], table, facts)
-
-
-def write_beside(answers: Sequence[tuple[Row, str]], table: Path, facts: Path) -> None:
-    """Both files with these answers beside those that are kept, or in the place of what was asked of the same
-    voyage at the same time; one asked again of a voyage that is not kept is left out."""
-    with table.open(newline="") as file:
-        known = zip(csv.DictReader(file), facts.read_text().splitlines(), strict=True)
-        kept = {(of["voyage"], of["asked"]): (of, told) for of, told in known}
-    for row, asked in answers:
-        if asked != "again" or any((row["key"], time) in kept for time in TIMES):
-            kept[row["key"], asked] = line(row, asked), _facts_line(row)
-    _put(sorted(kept.values(), key=lambda of: list(TIMES).index(of[0]["asked"])), table, facts)
-
-
-def _put(kept: Sequence[tuple[Mapping[str, str], str]], table: Path, facts: Path) -> None:
+def write(answers: Sequence[Row], table: Path, facts: Path) -> None:
+    """Both files of these answers."""
     with table.open("w", newline="") as file:
         out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         out.writeheader()
-        out.writerows(of for of, _ in kept)
-    facts.write_text("".join(f"{told}\n" for _, told in kept))
+        out.writerows(map(line, answers))
+    facts.write_text("".join(f"{_facts_line(row)}\n" for row in answers))
 
 
 def _facts_line(row: Row) -> str:
@@ -173,7 +149,6 @@ def _row(of: Mapping[str, str], facts: dict[str, Any]) -> dict[str, Any]:
     without, best = _number(of["oracle_without_m"]), _number(of["oracle_with_m"])
     return {
         "key": of["voyage"],
-        "asked": of["asked"],
         "family": of["family"],
         "seed": int(of["ship"].rpartition("-")[2]),
         "kind": of["kind"],
@@ -209,26 +184,3 @@ def _parameters(effect: str, numbers: Mapping[str, Sequence[float]]) -> list[dic
         for label, (value, low, high, _) in numbers.items()
         if label.partition(".")[0] == effect
     ]
-
-
-def of_batch(rows: Sequence[Row], asked: str) -> list[Row]:
-    """The answers of that time (TIMES)."""
-    return [row for row in rows if row["asked"] == asked]
-
-
-def together(rows: Sequence[Row]) -> list[Row]:
-    """One answer a voyage: the latest. What the truth gains is as first measured, for all answers alike."""
-    first = {row["key"]: row for row in rows if row["asked"] != "again"}
-    later = {
-        row["key"]: {**row, "oracle": _first_measured(first[row["key"]]["oracle"], row["oracle"])}
-        for row in rows
-        if row["asked"] == "again"
-    }
-    return [later.get(key, row) for key, row in first.items()]
-
-
-def _first_measured(first: Mapping[str, Any] | None, later: Mapping[str, Any] | None) -> Any:
-    """Of several causes, what each gains is measured since 28 November 2026 alone."""
-    if first is None or first["gain_by_each"] or later is None:
-        return first
-    return {**first, "gain_by_each": later["gain_by_each"]}

@@ -132,23 +132,35 @@ def _held_out(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(told), np.concatenate(so)
 
 
-def fitted(found: Sequence[AnswerExample]) -> dict[str, Any]:
-    """Of each question: the weights fitted to all, and the reliability with each family held out."""
+def fitted(found: Sequence[AnswerExample], new: Sequence[AnswerExample] = ()) -> dict[str, Any]:
+    """Of each question: the weights fitted to all that was `found`, and the reliability with each family held
+    out; and what those weights are worth on `new` ships."""
     out = {}
     for name, question in QUESTIONS.items():
-        own = [e for e in found if e.question == name]
-        (p, y), w = _held_out(own), logistic(*_arrays(own))
-        bins = [(lo, hi, (p >= lo) & (p < hi)) for lo, hi in pairwise(BINS)]
+        own, others = ([e for e in some if e.question == name] for some in (found, new))
+        w = logistic(*_arrays(own))
         out[name] = {
             "weights": dict(zip(("constant", *question.facts), [round(float(v), 2) for v in w], strict=True)),
-            "log_likelihood": float(np.mean(np.log(np.where(y > 0.5, p, 1 - p)))),
-            "reliability": [
-                [lo, hi, float(p[i].mean()), str(share((y[i] > 0.5).tolist()))]
-                for lo, hi, i in bins
-                if i.any()
-            ],
+            "held_out": _reliability(*_held_out(own)),
         }
+        if others:
+            x, y = _arrays(others)
+            out[name]["new"] = _reliability(1 / (1 + np.exp(-(w[0] + x @ w[1:]))), y)
     return out
+
+
+def _reliability(p: np.ndarray, y: np.ndarray) -> dict[str, Any]:
+    """Of what was told (N,) and what was so (N,): by what was told, the mean of it and how often it was so;
+    and the mean log likelihood."""
+    bins = {f"{lo:g} to {hi:g}": (p >= lo) & (p < hi) for lo, hi in pairwise(BINS)}
+    return {
+        "log_likelihood": float(np.mean(np.log(np.where(y > 0.5, p, 1 - p)))),
+        "so": {
+            told: [float(p[i].mean()), str(share((y[i] > 0.5).tolist()))]
+            for told, i in bins.items()
+            if i.any()
+        },
+    }
 
 
 def page_lines(found: Mapping[str, Any]) -> list[str]:
@@ -156,11 +168,24 @@ def page_lines(found: Mapping[str, Any]) -> list[str]:
     out: list[str] = []
     for name, one in found.items():
         weights = ", ".join(f"{k} {v:g}" for k, v in one["weights"].items())
+        held, new = one["held_out"], one.get("new")
         text = (
             f"What the fit to the other families says, and how often it is so. Fitted to all: {weights}. "
-            f"Mean log likelihood with the family left out: {one['log_likelihood']:.3f}."
+            f"Mean log likelihood with the family left out: {held['log_likelihood']:.3f}"
         )
-        body = [(f"{lo:g} to {hi:g}", f"{mean:.2f}", there) for lo, hi, mean, there in one["reliability"]]
+        text += (
+            f"; of what the fit to all says of the new ships: {new['log_likelihood']:.3f}." if new else "."
+        )
+        told = held["so"] | (new["so"] if new else {})
+        body = [
+            (bin, *(cell for of in (held, new) if of for cell in _cells(of["so"].get(bin))))
+            for bin in sorted(told)
+        ]
+        titles = ("told", "mean told", "so", *(("mean told, new ships", "so, new ships") if new else ()))
         title = f"Told that {QUESTIONS[name].asks}: each family held out in turn"
-        out += lines(title, text, ("told", "mean told", "so"), body)
+        out += lines(title, text, titles, body)
     return out
+
+
+def _cells(of: tuple[float, str] | None) -> tuple[str, str]:
+    return (f"{of[0]:.2f}", of[1]) if of else ("-", "-")
