@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bench.fleet import keep_answers, kept_rows
 from bench.fleet.answer_score import right
-from bench.fleet.fleet_page import figures
+from bench.fleet.fleet_figures import figures
 from twin.study.diagnosis.facts import Facts
 
 DOCS = Path(__file__).parents[1] / "docs"

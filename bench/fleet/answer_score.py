@@ -10,7 +10,7 @@ from bench.fleet.hidden_causes import CATALOGUE, OF_THE_VOYAGE
 Row = Mapping[str, Any]
 GAINS = 0.10  # share by which its oracle must bring the ship nearer, for a cause to count as one to be found
 SAME = {"Current": {"Current", "VaryingCurrent"}, "VaryingCurrent": {"Current", "VaryingCurrent"}}
-# kinds that were outside the catalogue when the fleet was made -> the effect that is one by now
+# kinds that were outside the catalogue when the fleet was made -> the effects that they are by now
 BY_NOW = {"SlowCompass": {"HeadingLag"}, "RateScale": {"GyroScale"}}
 WEATHER_PROBABILITY = 0.5  # probability from which weather is told as today's
 
@@ -45,6 +45,20 @@ def causes(names: Sequence[str]) -> set[str]:
     return {n for n in names if n not in OF_THE_VOYAGE}
 
 
+def hidden_causes(row: Row) -> set[str]:
+    """The hidden causes of ship and instruments, by the names that the catalogue has for them by now; none on
+    a healthy voyage."""
+    its = () if row["kind"] == "nothing" else row["hidden"]
+    return causes(list(its)).union(*(BY_NOW.get(n, ()) for n in its))
+
+
+def kind(row: Row) -> str:
+    """What is hidden: nothing, a single cause, a pair, a triple; what is in no catalogue (outside), or was in
+    none when the fleet was made (by now)."""
+    by_now = row["kind"] == "outside" and all(n in BY_NOW for n in row["hidden"])
+    return "by now" if by_now else str(row["kind"])
+
+
 def answered_weather(row: Row) -> set[str]:
     """Water and weather that an answer tells, as missing or as today's."""
     today = {w["effect"] for w in row.get("weather", ()) if w["probability"] >= WEATHER_PROBABILITY}
@@ -52,20 +66,20 @@ def answered_weather(row: Row) -> set[str]:
 
 
 def right(row: Row, missing: Sequence[str] | None = None, verdict: str | None = None) -> bool:
-    """Whether an answer says what the truth is: every hidden cause of ship and instruments and no other,
-    every
-    hidden weather; no cause is named on a healthy ship; what is in no catalogue has no name."""
+    """Whether an answer says what the truth is: every hidden cause of ship and instruments and no other, and
+    every hidden weather, and nothing unknown beside; no cause on a healthy ship; of what is in no catalogue,
+    no name."""
     missing, verdict = row["missing"] if missing is None else missing, verdict or row["verdict"]
-    named, hidden = causes(missing), set(row["hidden"])
-    if row["kind"] == "outside":
-        known = set().union(*(BY_NOW.get(n, set()) for n in hidden))
-        return named == known if named and known else not named and verdict in ("unknown", "undecided")
-    if row["kind"] == "nothing":
+    named, of = causes(missing), kind(row)
+    if of == "outside":
+        return not named and verdict in ("unknown", "undecided")
+    if of == "by now":
+        return named == set().union(*(BY_NOW[n] for n in row["hidden"]))
+    if of == "nothing":
         return not named and verdict != "unknown"
     seen = answered_weather(row) | set(missing)
-    return named == causes(list(hidden)) and all(
-        SAME.get(n, {n}) & seen for n in hidden if n in OF_THE_VOYAGE
-    )
+    weather = all(SAME.get(n, {n}) & seen for n in row["hidden"] if n in OF_THE_VOYAGE)
+    return named == hidden_causes(row) and weather and verdict != "unknown"
 
 
 def alarm(row: Row) -> bool:
@@ -80,14 +94,20 @@ def gains(row: Row) -> bool:
 
 
 def each_gains(row: Row) -> bool:
-    """Whether each of several hidden causes of ship and instruments, the others known, would bring the ship a
-    tenth nearer."""
-    gain_by_each = (row.get("oracle") or {}).get("gain_by_each")
-    return bool(gain_by_each) and all(gain >= GAINS for gain in gain_by_each.values())
+    """Whether all that is hidden are causes of ship and instruments, of which each, the others known, would
+    bring the ship a tenth nearer."""
+    gain_by_each = (row.get("oracle") or {}).get("gain_by_each") or {}
+    return len(gain_by_each) == len(row["hidden"]) and all(gain >= GAINS for gain in gain_by_each.values())
 
 
-def wrong_names(row: Row) -> set[str]:
-    return causes(row["missing"]) - set(row["hidden"]).union(*(BY_NOW.get(n, ()) for n in row["hidden"]))
+def wrong_names(row: Row, missing: Sequence[str] | None = None) -> set[str]:
+    """Causes of ship and instruments that are named and not there."""
+    return causes(row["missing"] if missing is None else missing) - hidden_causes(row)
+
+
+def of_weather(row: Row) -> bool:
+    """Whether all that is hidden is water and weather."""
+    return not causes(list(row["hidden"]))
 
 
 def astray(row: Row, limit: float = 1.5) -> bool:
@@ -144,7 +164,7 @@ def posterior(candidate: Mapping[str, Any]) -> float:
 def answered_posteriors(row: Row) -> list[tuple[float, bool]]:
     """The posterior of every cause that an answer tells, and whether the cause is there."""
     return [
-        (posterior(c), c["effect"] in row["hidden"])
+        (posterior(c), c["effect"] in hidden_causes(row))
         for c in row["candidates"]
         if c["effect"] in CATALOGUE and c["effect"] not in OF_THE_VOYAGE
     ]

@@ -1,7 +1,7 @@
-"""The decision fitted, with each family of ships held out in turn: `python -m bench.fleet fit FOLDER`.
+"""The decision fitted, with each form of hull held out in turn: `python -m bench.fleet fit FOLDER`.
 
 Two forms are asked. The table of rules as it is (twin/study/diagnosis/decision.py) with its thresholds moved,
-one at a time, as long as the ships of the other families gain by it. And a logistic model that is monotone in
+one at a time, as long as the ships of the other forms gain by it. And a logistic model that is monotone in
 a few facts, which says of each cause of the explanation how likely it is there, in the place of the rules
 that name."""
 
@@ -18,6 +18,7 @@ from bench.fleet import answer_score, probability_fit
 from bench.fleet.answer_score import Row, Share, share
 from bench.fleet.decided_again import decided_again, read_facts
 from bench.fleet.fleet_page import lines, rows_of
+from bench.fleet.hull_families import form_of
 from bench.fleet.probability_fit import logistic
 from twin.study.diagnosis import criteria, decision, naming
 from twin.study.diagnosis.calibrated_probability import FACTS
@@ -75,7 +76,7 @@ def worth(rows: Sequence[Row], decide: Decide) -> float:
     """What an answer is worth on average: right ones, less wrong names, less alarms beyond what may be."""
     said = [(r, *decide(r)) for r in rows]
     right = [answer_score.right(r, m, v) for r, m, v in said if r["kind"] != "nothing" and can_be_named(r)]
-    wrong = [bool(answer_score.causes(m) - set(r["hidden"])) for r, m, _ in said if r["kind"] != "nothing"]
+    wrong = [bool(answer_score.wrong_names(r, m)) for r, m, _ in said if r["kind"] != "nothing"]
     alarm = [bool(answer_score.causes(m)) or v == "unknown" for r, m, v in said if r["kind"] == "nothing"]
     return _mean(right) - WRONG * _mean(wrong) - COST * max(0.0, _mean(alarm) - ALARMS)
 
@@ -86,7 +87,7 @@ def _mean(some: Sequence[bool]) -> float:
 
 def can_be_named(row: Row) -> bool:
     """Whether it can be asked that a cause is named at all: its oracle gains, or it has no oracle."""
-    return row["kind"] == "outside" or answer_score.gains(row)
+    return answer_score.kind(row) in ("outside", "by now") or answer_score.gains(row)
 
 
 def moved(rows: Sequence[Row]) -> dict[str, float]:
@@ -106,11 +107,11 @@ def moved(rows: Sequence[Row]) -> dict[str, float]:
 
 def healthy_limits(rows: Sequence[Row]) -> dict[str, float]:
     """What HEALTHY of the healthy voyages end within, in expected errors, the day's weather in the model: of
-    all (""), and of all but a family, by its name."""
-    errors = [(r["family"], r["read"].error_nothing) for r in rows if r["kind"] == "nothing"]
+    all (""), and of all but a form of hull, by its name."""
+    errors = [(form_of(r["family"]), r["read"].error_nothing) for r in rows if r["kind"] == "nothing"]
     return {
-        left_out: float(np.quantile([e for family, e in errors if family != left_out], HEALTHY))
-        for left_out in ("", *_families(rows))
+        left_out: float(np.quantile([e for form, e in errors if form != left_out], HEALTHY))
+        for left_out in ("", *_forms(rows))
     }
 
 
@@ -161,9 +162,9 @@ def outcome(rows: Sequence[Row], decide: Decide) -> dict[str, tuple[int, int]]:
         "pair and triple, gains": of(
             lambda r: r["kind"] in ("pair", "triple") and answer_score.gains(r), answer_score.right
         ),
-        "outside": of(lambda r: r["kind"] == "outside", answer_score.right),
+        "outside": of(lambda r: answer_score.kind(r) == "outside", answer_score.right),
         "wrong name": of(
-            lambda r: r["kind"] != "nothing", lambda r, m, v: bool(answer_score.causes(m) - set(r["hidden"]))
+            lambda r: r["kind"] != "nothing", lambda r, m, v: bool(answer_score.wrong_names(r, m))
         ),
         "healthy, named": of(lambda r: r["kind"] == "nothing", lambda r, m, v: bool(answer_score.causes(m))),
         "healthy, alarm": of(
@@ -181,24 +182,24 @@ def added(all_of: Sequence[dict[str, tuple[int, int]]]) -> dict[str, str]:
 
 
 def chosen(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
-    """What the ships of the other families ask for, a family: thresholds that differ from those of before,
+    """What the ships of the other forms ask for, a form: thresholds that differ from those of before,
     and the probability from which the logistic model names a cause. (Minutes.)"""
     out = {}
-    for family in _families(rows):
-        others = [r for r in rows if r["family"] != family]
+    for form in _forms(rows):
+        others = [r for r in rows if form_of(r["family"]) != form]
         limit = working_point(others, logistic(*examples(others)))
-        out[family] = {"thresholds": _changed(moved(others)), "limit": limit}
+        out[form] = {"thresholds": _changed(moved(others)), "limit": limit}
     return out
 
 
 def held_out(rows: Sequence[Row], asked_for: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """What becomes of each family with what the others ask for (`chosen`): the figures of the table as it
-    was before, with its thresholds moved, and of the logistic model; and the same of that by the probability
-    from which it names a cause."""
+    """What becomes of each form of hull with what the others ask for (`chosen`): the figures of the table as
+    it was before, with its thresholds moved, and of the logistic model; and the same of that by the
+    probability from which it names a cause."""
     held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
     curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
-    for family, of in asked_for.items():
-        own, others = [r for r in rows if r["family"] == family], [r for r in rows if r["family"] != family]
+    for form, of in asked_for.items():
+        own, others = ([r for r in rows if (form_of(r["family"]) == form) == its] for its in (True, False))
         for name, moves in (("before", {}), ("thresholds moved", of["thresholds"])):
             with thresholds(BEFORE | moves):
                 held[name].append(outcome(own, by_table))
@@ -217,12 +218,17 @@ def with_facts(rows: Sequence[Row]) -> list[dict[str, Any]]:
     return [{**r, "read": read_facts(r)} for r in rows]
 
 
+def of_one_search(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Those that the table can decide again: an answer of two searches was decided by the facts of each."""
+    return [r for r in rows if not r.get("further")]
+
+
 def run(args: argparse.Namespace) -> int:
-    rows = with_facts(rows_of(args.folder))
+    rows = of_one_search(with_facts(rows_of(args.folder)))
     asked_for, w = chosen(rows), logistic(*examples(rows))
     result = held_out(rows, asked_for) | {
         "voyages": len(rows),
-        "chosen_by_family_held_out": asked_for,
+        "chosen_by_form_held_out": asked_for,
         "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
         "probabilities": probability_fit.fitted(probability_fit.examples(rows)),
     }
@@ -232,8 +238,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _families(rows: Sequence[Row]) -> list[str]:
-    return sorted({r["family"] for r in rows})
+def _forms(rows: Sequence[Row]) -> list[str]:
+    return sorted({form_of(r["family"]) for r in rows})
 
 
 def _changed(best: Mapping[str, float]) -> dict[str, float]:
@@ -250,10 +256,10 @@ def fitted_lines(result: Mapping[str, Any]) -> list[str]:
     body = [(figure, *(held[name][figure] for name in held)) for figure in held["before"]]
     text = (
         "By the table with the thresholds that were conventions, before any fit; with those that the other "
-        "families ask for; and by a logistic model of the facts, fitted to the other families."
+        "forms ask for; and by a logistic model of the facts, fitted to the other forms."
     )
-    out = lines("The decision fitted, each family held out in turn", text, ("", *held), body)
+    out = lines("The decision fitted, each form of hull held out in turn", text, ("", *held), body)
     keys = ("single, gains", "pair and triple, gains", "wrong name", "healthy, named")
-    text = "Of the logistic model with each family held out, by the probability from which a cause is named."
+    text = "Of that model with each form of hull held out, by the probability from which a cause is named."
     curve = [(t, *(c[k] for k in keys)) for t, c in result["curve"].items()]
     return out + lines("Names against false alarms", text, ("from", *keys), curve)

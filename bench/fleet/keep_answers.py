@@ -21,10 +21,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """The rows put down, and what families of ships ask of the decision for the one that is left out.
+    """The rows put down, and what the forms of hulls ask of the decision for the one that is left out.
     (Minutes.)"""
     kept_rows.write(rows_of(args.folder), *(NEW_SHIPS if args.new else FLEET))
     if not args.new:
-        fit = decision_fit.chosen(decision_fit.with_facts(kept_rows.read(*FLEET)))
+        fit = decision_fit.chosen(decision_fit.of_one_search(decision_fit.with_facts(kept_rows.read(*FLEET))))
         FIT.write_text(json.dumps(fit, indent=1) + "\n")
     return 0

@@ -3,6 +3,7 @@
 import argparse
 import json
 import pickle
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -65,13 +66,15 @@ def ask_again(
     workers: int,
 ) -> Iterator[dict[str, Any]]:
     """A row for each wanted answer of each folder, added to FOLDER/NAME as it comes; those that are there
-    are not asked again."""
+    are not asked again. One whose process ended is told, and no row: it is asked the next time."""
     for folder in folders:
         path = folder / name
         done = {row["key"] for row in read(path)} if path.exists() else set()
         jobs = [(str(folder), r) for r in answers(folder) if r["key"] not in done and wanted(r)]
         for one in spread(ask, jobs, workers):
-            row = one.answer or {"key": one.job[1]["key"], "failed": one.why}
+            if one.answer is None:
+                print(f"{one.job[1]['key']}: {one.why}", file=sys.stderr)
+                continue
             with path.open("a") as file:
-                file.write(json.dumps(plain(row)) + "\n")
+                file.write(json.dumps(plain(one.answer)) + "\n")
         yield from read(path) if path.exists() else ()

@@ -5,7 +5,8 @@ voyage beside what its readings leave open (`InstrumentUnknown.varies`):
 
     varies' = varies sqrt(mean((told - true)^2 / sd^2))
 
-where sd holds `varies`; repeated until nothing changes. Each family is judged by what the others taught."""
+where sd holds `varies`; repeated until nothing changes: of all ships, and with each family left out, of which
+the range is told. What lies inside its 95 % is told with `varies` as the twin has it."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""The probabilities that are told, fitted to the answers on random ships, each family held out in turn.
+"""The probabilities that are told, fitted to the answers on random ships, each form of hull held out in turn.
 
 Four questions (twin/study/diagnosis/calibrated_probability.py), each with a logistic model that is monotone
 in its facts: whether a cause of the explanation is there, one that the explanation does without, none at
@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from bench.fleet.answer_score import BY_NOW, Row, causes, posterior, share
+from bench.fleet.answer_score import Row, causes, hidden_causes, kind, posterior, share
 from bench.fleet.decided_again import decided_again
 from bench.fleet.fleet_page import lines
+from bench.fleet.hull_families import form_of
 from twin.study.diagnosis.calibrated_probability import FACTS, log_odds, posterior_of_unknown, unnamed
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts
@@ -28,16 +29,12 @@ class AnswerExample:
     """One question of one answer: the facts that the model is asked with, and whether it is so."""
 
     question: str
-    family: str
+    form: str  # of the hull: families that share one are left out together
     facts: list[float]
     so: bool
 
 
 FactsAndTruth = tuple[list[float], bool]  # facts, and whether it is so
-
-
-def _hidden(row: Row) -> set[str]:
-    return set(row["hidden"]).union(*(BY_NOW.get(n, ()) for n in row["hidden"]))
 
 
 def values(f: Facts, c: Cause, d: Decision) -> list[float]:
@@ -49,13 +46,13 @@ def of_causes(row: Row) -> list[FactsAndTruth]:
     """Each cause of the explanation."""
     f: Facts = row["read"]
     d = decided_again(row, f)
-    return [(values(f, c, d), c.effect in _hidden(row)) for c in f.causes if c.in_explanation]
+    return [(values(f, c, d), c.effect in hidden_causes(row)) for c in f.causes if c.in_explanation]
 
 
 def _of_causes_beside(row: Row) -> list[FactsAndTruth]:
     within = {c.effect for c in row["read"].causes if c.in_explanation}
     return [
-        ([log_odds(posterior(c))], c["effect"] in _hidden(row))
+        ([log_odds(posterior(c))], c["effect"] in hidden_causes(row))
         for c in row["candidates"]
         if c and c["effect"] not in within and causes([c["effect"]])
     ]
@@ -63,12 +60,12 @@ def _of_causes_beside(row: Row) -> list[FactsAndTruth]:
 
 def _of_nothing(row: Row) -> list[FactsAndTruth]:
     f: Facts = row["read"]
-    return [([log_odds(f.nothing), unnamed(f, decided_again(row, f))], not causes(list(row["hidden"])))]
+    return [([log_odds(f.nothing), unnamed(f, decided_again(row, f))], not hidden_causes(row))]
 
 
 def _of_unknown(row: Row) -> list[FactsAndTruth]:
     verdict, posterior = decided_again(row, row["read"]).verdict, posterior_of_unknown(row["read"])
-    return [([log_odds(posterior), float(verdict == "unknown")], row["kind"] == "outside")]
+    return [([log_odds(posterior), float(verdict == "unknown")], kind(row) == "outside")]
 
 
 @dataclass(frozen=True)
@@ -110,7 +107,7 @@ def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def examples(rows: Sequence[Row]) -> list[AnswerExample]:
     """Every question of every row."""
     return [
-        AnswerExample(name, row["family"], facts, so)
+        AnswerExample(name, form_of(row["family"]), facts, so)
         for row in rows
         for name, question in QUESTIONS.items()
         for facts, so in question.of(row)
@@ -122,11 +119,11 @@ def _arrays(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _held_out(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
-    """What the fit to the other families says of each example, and whether it is so."""
+    """What the fit to the other forms of hulls says of each example, and whether it is so."""
     told, so = [], []
-    for family in sorted({e.family for e in found}):
-        w = logistic(*_arrays([e for e in found if e.family != family]))
-        x, y = _arrays([e for e in found if e.family == family])
+    for form in sorted({e.form for e in found}):
+        w = logistic(*_arrays([e for e in found if e.form != form]))
+        x, y = _arrays([e for e in found if e.form == form])
         told.append(1 / (1 + np.exp(-(w[0] + x @ w[1:]))))
         so.append(y)
     return np.concatenate(told), np.concatenate(so)
@@ -170,8 +167,8 @@ def page_lines(found: Mapping[str, Any]) -> list[str]:
         weights = ", ".join(f"{k} {v:g}" for k, v in one["weights"].items())
         held, new = one["held_out"], one.get("new")
         text = (
-            f"What the fit to the other families says, and how often it is so. Fitted to all: {weights}. "
-            f"Mean log likelihood with the family left out: {held['log_likelihood']:.3f}"
+            f"What the fit to ships of other forms says, and how often it is so. Fitted to all: {weights}. "
+            f"Mean log likelihood with the form left out: {held['log_likelihood']:.3f}"
         )
         text += (
             f"; of what the fit to all says of the new ships: {new['log_likelihood']:.3f}." if new else "."
@@ -182,7 +179,7 @@ def page_lines(found: Mapping[str, Any]) -> list[str]:
             for bin in sorted(told)
         ]
         titles = ("told", "mean told", "so", *(("mean told, new ships", "so, new ships") if new else ()))
-        title = f"Told that {QUESTIONS[name].asks}: each family held out in turn"
+        title = f"Told that {QUESTIONS[name].asks}: each form of hull held out in turn"
         out += lines(title, text, titles, body)
     return out
 

@@ -46,6 +46,13 @@ def step_of(ship: RandomShip) -> float:
     return 1.0 / np.ceil(1.0 / min(FINEST, ship.p.unit_s / 40))
 
 
+def cross_flow_strips(f: Flaws, length_m: float) -> list[tuple[float, float]]:
+    """Where ten strips of a hull with cross-flow drag stand [m before midship], and the share of the lateral
+    area times the drag coefficient of each; none where nothing is wrong."""
+    places = np.arange(-0.45, 0.5, 0.1) if f.cross_flow else ()
+    return [(float(x) * length_m, 0.1 * f.cross_flow * (0.3 + 0.7 * (2 * float(x)) ** 2)) for x in places]
+
+
 def sail(
     ship: RandomShip,
     legs: list[FleetLeg],
@@ -76,11 +83,7 @@ def sail(
     u, n, old, pool, pool_rate, stuck = p.U0, d.n0, None, 0.0, 0.0, -1.0
     late: deque[float] = deque([0.0] * (int(f.lag_s / dt) + 1))
     w_roll = (9.81 * ship.GM * (1 - f.soft)) ** 0.5 / (0.4 * p.B)
-    strips = (
-        [(k / 10 * p.L, 0.1 * f.cross_flow * (0.3 + 0.7 * (2 * k / 10) ** 2)) for k in range(-4, 6)]
-        if f.cross_flow
-        else []
-    )
+    strips = cross_flow_strips(f, p.L)
     hull.start()
     out = np.empty((steps, len(KEPT)))
     for i in range(steps):

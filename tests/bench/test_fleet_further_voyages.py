@@ -1,8 +1,11 @@
 """What follows an answer of the fleet: more voyages of the ship, and what their owner makes of them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from bench.fleet import kept_ships
 from bench.fleet.addition_proof import table
 from bench.fleet.kept_ships import answers
 from bench.fleet.plausibility import build
@@ -71,3 +74,17 @@ def test_answers_about_more_voyages_stand_beside_those_about_one():
 def test_a_folder_without_answers_says_how_they_are_made(tmp_path):
     with pytest.raises(DataError, match="no answers in it"):
         answers(tmp_path)
+
+
+def test_a_voyage_whose_process_ended_is_told_and_asked_the_next_time(tmp_path, monkeypatch, capsys):
+    (tmp_path / "rows.jsonl").write_text('{"key": "mmg-0-1", "missing": []}\n')
+    dead = [SimpleNamespace(answer=None, why="no process", job=(str(tmp_path), {"key": "mmg-0-1"}))]
+    well = [SimpleNamespace(answer={"key": "mmg-0-1", "2": {}}, why=None, job=dead[0].job)]
+    asked = []
+    for one in (dead, well):
+        monkeypatch.setattr(
+            kept_ships, "spread", lambda ask, jobs, workers, one=one: asked.append(jobs) or one
+        )
+        found = list(kept_ships.ask_again([tmp_path], "more.jsonl", lambda row: True, print, 1))
+    assert [len(jobs) for jobs in asked] == [1, 1] and found == [well[0].answer]
+    assert "mmg-0-1: no process" in capsys.readouterr().err
