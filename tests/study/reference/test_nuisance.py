@@ -11,7 +11,7 @@ from twin.physics.ship import load
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.linear import linearise
-from twin.study.reference.between import BetweenVoyages, scattered
+from twin.study.reference.between import BetweenVoyages, doubted, scattered
 from twin.study.reference.nuisance import TEMPER, Known, known_from, lasting, learned_since, usual_unknowns
 from twin.study.track.track import track
 
@@ -62,6 +62,29 @@ def test_the_next_voyage_is_never_known_better_than_healthy_voyages_differ():
     np.testing.assert_allclose(foretold, 1.5 * lasting_ones, rtol=0.05, atol=1e-8)
     assert known.between == {}
     assert {u.owner for u in unknowns if u.varies} == {"HeadingBias", "SpeedLogMisalignment"}
+
+
+def usual_of_wind(days):
+    """How much c_y of a ship whose file has wind is usually otherwise [-], when references had it so far from the
+    file on these days, in what is usual of a ship that was never calibrated."""
+    ship = replace(load("kvlcc2"), A_F=1200.0, A_L=3000.0)
+    known = of_ship(ship)
+    unknowns = usual_unknowns(Model.of(ship).but(known["Wind"].plausible(ship)), known)
+    i, none = [u.label for u in unknowns].index("Wind.c_y"), np.zeros(len(unknowns))
+    tells = 100.0 * np.diag(np.arange(none.size) == i)
+    told = [BetweenVoyages(tells, tells[i] * day, tells[i, i] * day**2) for day in days]
+    usual = doubted(told, none, none, np.array([u.of_file for u in unknowns]))
+    found = Known(unknowns, tuple(told), scattered(told, none, usual), usual, none).nuisance()
+    assert "Wind.c_y" not in [u.label for u in found.unknowns]
+    return found.daily["Wind.c_y"] / unknowns[i].sd
+
+
+def test_how_far_the_answer_to_wind_differs_is_learned_from_the_voyages():
+    """Test: references that have the same wind, references that scatter, and none. Expected: less freedom than a
+    ship that was never calibrated has, more, and about as much."""
+    assert usual_of_wind([0.0, 0.1, -0.1, 0.05]) < 0.5
+    assert usual_of_wind([1.5, -1.4, 0.2, -1.2]) > 0.9
+    assert 1.0 < usual_of_wind([]) < 1.5
 
 
 def test_ages_of_readings_are_numbers_of_their_effects():

@@ -112,8 +112,8 @@ def test_a_change_is_asked_of_what_she_has_and_of_the_weather_that_she_knows(tan
     assert {"Wind", "RudderWear"} <= set(judgeable(tracks, Model.of(tanker), known))
     has = Model.of(tanker).but(known["Wind"].plausible(tanker), known["RudderWear"].plausible(tanker))
     assert {"Wind", "RudderWear"} <= set(judgeable(tracks, has, known))
-    assert of_known_weather(Model.of(tanker), known) == {}
-    usual = of_known_weather(has, known)
+    assert of_known_weather(Model.of(tanker), known) == []
+    usual = {u.label: u.sd for u in of_known_weather(has, known)}
     assert (
         usual
         and {label.split(".")[0] for label in usual} == {"Wind"}

@@ -27,10 +27,9 @@ from twin.study.reference.nuisance import (
     from_ship,
     known_from,
     nuisance_unknowns,
-    of_known_weather,
-    of_no_calibration,
     placed_by_owner,
     temper_of,
+    usual_of_file,
     usual_unknowns,
     with_effects,
 )
@@ -104,8 +103,7 @@ def of_tracks(
         if references
         else _of_calibration(about, nuisance)
     )
-    usual = of_known_weather(model, catalogue) | of_no_calibration(model, catalogue)
-    daily = dict(before.known.daily) | usual
+    daily = usual_of_file(model, catalogue) | dict(before.known.daily)
     daily |= {u.label: daily[key] for u in effects if (key := f"{u.owner}.{u.name}") in daily}
     known = replace(before.known.beside(rough), daily=daily)
     progress("linearising the ship and its instruments along the tracks")

@@ -45,6 +45,7 @@ class Unknown:
     also: tuple[str, ...] = ()
     varies: float = 0.0  # standard deviation between healthy voyages of one ship, in `sd`
     age: bool = False  # whether it is the age of a reading, which differs from voyage to voyage
+    of_file: bool = False  # whether it is how the ship answers to weather that its file knows
     turning: str = ""  # of a compass or receiver: the number of its effect that is the same (of_effect.py)
     voyage: str | None = None  # the track's name of the only voyage on which it acts; None: on all
 

@@ -26,7 +26,7 @@ from twin.study.estimation.columns import rough_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.of_effect import effect_unknowns
 from twin.study.reference.evidence import Reduced, reduce, weigh_sets
-from twin.study.reference.nuisance import Known, of_known_weather, of_no_calibration, with_effects
+from twin.study.reference.nuisance import Known, usual_of_file, with_effects
 from twin.study.reference.reading import MOST_SEGMENTS, read_lines
 from twin.study.track.track import Track
 
@@ -99,8 +99,7 @@ def left_out_scores(
     out = []
     for i, track in enumerate(tracks):
         usual = known.nuisance(without=i).beside(rough)
-        daily = of_known_weather(model, kinds) | of_no_calibration(model, kinds)
-        usual = replace(usual, daily=dict(usual.daily) | daily)
+        usual = replace(usual, daily=usual_of_file(model, kinds) | dict(usual.daily))
         lines = read_lines([track], model, unknowns, kinds, MOST_SEGMENTS)
         normal = innovate(lines, [noise_model], MOST_SEGMENTS)[0]
         out.append(score(reduce(normal, usual, unknowns, effects, temper), causes, weather))

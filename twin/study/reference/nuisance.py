@@ -61,16 +61,12 @@ def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     return [u for e in catalogue.values() if e.every_day for u in effect_unknowns(e, model) if u.every_day]
 
 
-def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
-    """By how much [its own unit] each number of weather that the ship's file knows is usually otherwise: its
-    form is only roughly right, and another wind or sea shows what is not."""
-    present = {type(e).__name__ for e in model.effects if e.of_recorded_weather()}
-    return {
-        u.label: HEALTHY_WIDTHS * u.sd
-        for name in present
-        if name in catalogue
-        for u in effect_unknowns(catalogue[name], model)
-    }
+def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
+    """By how much each number of weather that the ship's file knows may be otherwise on a day, as long as no
+    reference voyages say: its form is only roughly right, and another wind or sea shows what is not."""
+    present = (type(e).__name__ for e in model.effects if e.of_recorded_weather())
+    its = (u for name in present if name in catalogue for u in effect_unknowns(catalogue[name], model))
+    return [replace(u, sd=HEALTHY_WIDTHS * u.sd, of_file=True) for u in its]
 
 
 def of_no_calibration(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
@@ -100,11 +96,20 @@ def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple
 
 
 def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """The same, and what the days of the reference voyages brought."""
+    """The same, and what the days of the reference voyages brought, also of weather that the ship's file
+    knows."""
     return (
         *nuisance_unknowns(model, catalogue),
         *(replace(u, sd=HEALTHY_WIDTHS * u.sd) for u in daily(model, catalogue)),
+        *of_known_weather(model, catalogue),
     )
+
+
+def usual_of_file(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
+    """By how much [its own unit] numbers are usually otherwise than the ship's file has them, or than none,
+    where no reference voyages say."""
+    of_weather = {u.label: u.sd for u in of_known_weather(model, catalogue)}
+    return of_weather | of_no_calibration(model, catalogue)
 
 
 def with_effects(
@@ -145,11 +150,12 @@ class Known:
         told = [t for i, t in enumerate(self.voyages) if i != without]
         mean, covariance = ship_of(told, self.scatter, self.pull)
         covariance = covariance + np.diag(self.scatter)
-        lasting_ones = [i for i, u in enumerate(self.unknowns) if not u.every_day]
+        of_a_day = np.array([u.every_day or u.of_file for u in self.unknowns])
+        lasting_ones = np.flatnonzero(~of_a_day)
         information = np.linalg.inv(covariance[np.ix_(lasting_ones, lasting_ones)])
         sizes = of_any_day(mean, np.diag(covariance), self.unknowns)
         usual = {
-            u.label: float(u.sd * size) for u, size in zip(self.unknowns, sizes, strict=True) if u.every_day
+            self.unknowns[i].label: float(self.unknowns[i].sd * sizes[i]) for i in np.flatnonzero(of_a_day)
         }
         return Nuisance(
             tuple(self.unknowns[i] for i in lasting_ones),
@@ -173,18 +179,22 @@ def known_from(
     told = voyages(innovate(lines, [noise_model])[0], sd, temper)
     several = told if len(lines) > 1 else []  # two halves of one voyage share its clocks
     usual = doubted(
-        several, pull, np.array([u.varies**2 for u in unknowns]), np.array([u.age for u in unknowns])
+        several,
+        pull,
+        np.array([u.varies**2 for u in unknowns]),
+        np.array([u.age or u.of_file for u in unknowns]),
     )
     return Known(unknowns, tuple(told), scattered(told, pull, usual), usual, pull)
 
 
 def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknown]) -> np.ndarray:
     """(C,) how much of each number a day brings, when these days had such a mean and spread: alike for the
-    parts of one effect, for no wind blows from the north alone. In prior widths, as `mean` and `variance`
-    (C,)."""
+    parts of what every day brings, for no stream sets to the north alone. In prior widths, as `mean` and
+    `variance` (C,)."""
     square, owner = mean**2 + variance, np.array([u.owner for u in unknowns])
     shared = np.array([u.every_day for u in unknowns])
-    return np.sqrt([square[(owner == u.owner) & shared].mean() if u.every_day else 0.0 for u in unknowns])
+    means = [square[(owner == u.owner) & shared].mean() if u.every_day else 0.0 for u in unknowns]
+    return np.sqrt(np.where([u.of_file for u in unknowns], square, means))
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
