@@ -60,9 +60,9 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
     CauseRule(
         "change_within_form",
         lambda f, c: c.in_ship_file and (c.alone <= criteria.CLEAR or c.change <= criteria.CHANGED),
-        "the ship file has it, and a change of it alone is no clear gain (log Bayes factor at most "
-        f"{num(criteria.CLEAR)}), or changes none of its numbers by more than {num(criteria.CHANGED)} "
-        "standard deviations of its form",
+        "the ship file has it, and a change of it alone is no clear gain (log odds, those beforehand among "
+        f"them, at most {num(criteria.CLEAR)}), or changes none of its numbers by more than "
+        f"{num(criteria.CHANGED)} standard deviations of its form",
     ),
     CauseRule(
         "not_significant",
