@@ -1,8 +1,9 @@
 """Faults of a known size in the readings of real runs: a real ship with a hidden cause, without any
 simulator.
 
-What an instrument would have shown is exact: a compass that is off turns the speed over ground with it, an
-antenna elsewhere sails its own way, a stream carries everything along. Rudder and propeller are recorded
+What an instrument would have shown is exact: a compass that is off turns the speed over ground with it, and
+the true wind, which is worked out on board from the wind about the ship; an antenna elsewhere sails its own
+way, a stream carries everything along. Rudder and propeller are recorded
 other than they were, which is what a ship with a weaker rudder or screw looks like, but for the flow that
 meets them."""
 
@@ -52,8 +53,22 @@ class PlantedReadings:
 
 
 def turned_compass(v: Voyage, bias: float) -> Voyage:
+    """A heading off by `bias` [rad], and what is turned by it: not the wind about the ship."""
     q = PlantedReadings.of(v)
-    return replace(q, psi=q.psi + bias).into(v)
+    return replace(q, psi=q.psi + bias).into(_with_turned_wind(v, q, bias))
+
+
+def _with_turned_wind(v: Voyage, q: PlantedReadings, bias: float) -> Voyage:
+    """The true wind as worked out with that heading: what blows about the ship turns along earth axes, the
+    velocity over ground that is added does not (none where it is unknown)."""
+    speed, came = "true_wind_speed_mps", "true_wind_direction_deg"
+    if not v.has(speed, came):
+        return v
+    ground = np.nan_to_num(q.north + 1j * q.east)
+    true = -v[speed] * np.exp(1j * np.radians(v[came]))
+    shown = ground + (true - ground) * np.exp(1j * bias)
+    turned = {speed: np.abs(shown), came: np.degrees(np.angle(-shown)) % 360.0}
+    return replace(v, columns=dict(v.columns) | turned)
 
 
 def antenna_elsewhere(v: Voyage, ahead: float) -> Voyage:

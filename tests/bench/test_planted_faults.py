@@ -1,5 +1,7 @@
 """Faults of a known size in the readings of a voyage."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -69,6 +71,44 @@ def test_a_turned_compass_moves_the_ship_nowhere_and_makes_her_drift(voyage):
     assert v["sway_velocity_mps"] == pytest.approx(-U * np.sin(0.05)) and v[
         "surge_velocity_mps"
     ] == pytest.approx(U * np.cos(0.05))
+
+
+def with_wind(v, speed, came):
+    """The voyage in a wind of `speed` [m/s] from `came` [deg], read about the ship and worked out on board."""
+    q = PlantedReadings.of(v)
+    about = (-speed * np.exp(1j * np.radians(came)) - q.north - 1j * q.east) * np.exp(-1j * q.psi)
+    wind = {
+        "true_wind_speed_mps": np.full(len(v), speed),
+        "true_wind_direction_deg": np.full(len(v), came),
+        "apparent_wind_speed_mps": np.abs(about),
+        "apparent_wind_angle_deg": np.degrees(np.angle(-about)),
+    }
+    return replace(v, columns=dict(v.columns) | wind)
+
+
+def test_a_wind_that_is_worked_out_on_board_turns_with_the_compass_and_the_wind_about_the_ship_does_not(
+    voyage,
+):
+    """Expected: as the effect that is named of it has it, but for the ship's own part in the wind; heading, speed
+    over ground and the wind about the ship, all as shown, make the true wind that is shown."""
+    windy = with_wind(voyage, 40.0, 300.0)
+    v = turned_compass(windy, 0.05)
+    turned = v["true_wind_direction_deg"] - 300.0
+    assert turned == pytest.approx(np.degrees(0.05), abs=np.degrees(0.05 * U / 40.0))
+    for name in ("apparent_wind_speed_mps", "apparent_wind_angle_deg"):
+        assert v[name] is windy[name]
+    again = with_wind(v, v["true_wind_speed_mps"], v["true_wind_direction_deg"])
+    assert again["apparent_wind_speed_mps"] == pytest.approx(windy["apparent_wind_speed_mps"])
+    assert again["apparent_wind_angle_deg"] == pytest.approx(windy["apparent_wind_angle_deg"])
+
+
+def test_a_true_wind_stays_known_where_the_speed_over_ground_is_not(voyage):
+    windy = with_wind(voyage, 40.0, 300.0)
+    hole = windy["surge_velocity_mps"].copy()
+    hole[5:9] = np.nan
+    v = turned_compass(replace(windy, columns=dict(windy.columns) | {"surge_velocity_mps": hole}), 0.05)
+    assert v["true_wind_direction_deg"][5:9] == pytest.approx(300.0 + np.degrees(0.05))
+    assert v["true_wind_speed_mps"][5:9] == pytest.approx(40.0)
 
 
 def test_a_rudder_that_comes_later_was_recorded_earlier(voyage):
