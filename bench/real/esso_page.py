@@ -15,10 +15,17 @@ SHIPTWIN_DATA=DIR python -m bench.real.esso_osaka FOLDER --page docs/results/rea
 A 3 m model of a tanker, steered in a pond under the open sky, with the wind measured on board (FRT-DS-
 ESSO: Wakita et al. 2022, doi 10.1007/s00773-021-00867-1; Miyauchi et al. 2022, doi
 10.1007/s00773-022-00889-3). The wind is 4 to 29 times as fast as the model, on the calmest runs too. The
-model is calibrated on the runs with the least wind for their speed, chosen before anything was asked, and
-asked of every other zigzag and circle: with the wind taken from it (**hidden**), with the wind as
-calibration found it (**given**), and given, with a fault of known size put into the readings. Nothing was
-fitted to these answers.
+model is calibrated on the runs with the least wind for their speed, chosen by that alone, and asked of every
+other zigzag and circle: with the wind taken from it (**hidden**), with the wind as calibration found it
+(**given**), and given, with a fault of known size put into the readings.
+
+Not blind: these runs have been asked again and again, and with one answer more or less right the difference
+is chance. Decisions were prompted by them or judged on them:
+[0023](../decisions/0023-what-a-receiver-or-a-compass-errs-by-is-no-force.md),
+[0024](../decisions/0024-the-expected-error-has-the-level-of-the-reference-voyages.md),
+[0025](../decisions/0025-what-a-model-leaves-over-has-one-memory.md),
+[0032](../decisions/0032-a-slope-of-the-position-is-no-second-reading.md) and
+[0035](../decisions/0035-clocks-differ-from-voyage-to-voyage-as-the-references-tell.md).
 """
 STREAM = {"Current", "VaryingCurrent"}
 

@@ -1,6 +1,7 @@
 """The pond's runs: which the model is calibrated on, what is asked, and what the page says of the answers."""
 
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,9 +10,10 @@ import pytest
 
 from bench.decisions.pond import pond_voyage
 from bench.real.esso_osaka import REFERENCES, chosen, main, questions
-from bench.real.esso_page import page
+from bench.real.esso_page import HEAD, page
 from twin.recording.voyage import Voyage
 
+PAGE = Path(__file__).parents[2] / "docs" / "results" / "real-esso-osaka.md"
 DATA = Path(os.environ.get("SHIPTWIN_DATA", ".")) / "esso_osaka"
 
 
@@ -72,6 +74,14 @@ def test_the_page_counts_single_runs_and_shows_each_answer():
     assert "`Wind` named | >= 80 % | 1 of 1" in text and "nothing missing | >= 70 % | 1 of 1" in text
     assert "named, or `unknown` | <= 5 % | 0 of 1" in text and "a wrong name | | 1 of 1" in text
     assert "1.2 to 0.8 after 37 s (expected 1.5)" in text
+
+
+def test_the_page_that_is_kept_begins_as_it_is_made_and_says_that_it_is_not_blind():
+    kept = PAGE.read_text()
+    assert kept.startswith(HEAD)
+    assert "Not blind" in HEAD and "before anything was asked" not in kept
+    named = re.findall(r"\(\.\./decisions/(00\d\d-[\w-]+\.md)\)", HEAD)
+    assert named and all((PAGE.parents[1] / "decisions" / name).is_file() for name in named)
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the runs of Esso Osaka are not here (SHIPTWIN_DATA)")
