@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.small_boats import ship_of
 from twin.physics.effects import find, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -12,7 +13,16 @@ from twin.study.diagnosis.assemble import of_tracks
 from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.linear import linearise
 from twin.study.reference.between import BetweenVoyages, doubted, scattered
-from twin.study.reference.nuisance import TEMPER, Known, known_from, lasting, learned_since, usual_unknowns
+from twin.study.reference.nuisance import (
+    TEMPER,
+    Known,
+    from_ship,
+    known_from,
+    lasting,
+    learned_since,
+    nuisance_unknowns,
+    usual_unknowns,
+)
 from twin.study.track.track import track
 
 RUDDER = "SteeringLag.delay"
@@ -130,3 +140,25 @@ def test_a_calibration_that_lacks_a_number_of_a_cause_is_older_than_it_and_none_
     assert of(every) == [] and of([]) == []
     assert of([x for x in every if x != "Loading.N_ur"]) == ["Loading"]
     assert of(every, find("GyroBias")()) == []
+
+
+@pytest.mark.parametrize(
+    ("ship", "name"), [(load("kvlcc2"), "PropellerWear"), (ship_of("thrusters"), "ThrusterWear.port")]
+)
+@pytest.mark.parametrize("beside", [False, True])
+def test_what_a_calibration_left_open_of_an_effect_does_not_count_once_the_ship_has_it(ship, name, beside):
+    """Test: a calibration that left the loss of a propeller, and of one of two thrusters, at 0.05 with an sd of
+    0.2 widths; then the ship gets that effect with a loss of 0.3. Expected: about its new number it is as open as
+    its prior; a calibration that was done beside that effect is believed as it stands."""
+    model, catalogue = Model.of(ship), of_ship(ship)
+    label = f"{name}.loss"
+    (width,) = (u.sd for u in nuisance_unknowns(model, catalogue) if u.label == label)
+    notes = {"labels": [label], "offset": [0.05], "covariance": [[(0.2 * width) ** 2]]}
+    notes["beside_effects"] = [name] if beside else []
+    with_it = ship.with_effects(find(name)(loss=0.3))
+    model = Model.of(replace(with_it, notes={**ship.notes, "structural": notes}))
+    unknowns = nuisance_unknowns(model, catalogue)
+    left, i = from_ship(model, unknowns), [u.label for u in unknowns].index(label)
+    covariance = np.linalg.inv(left.information)
+    mean, sd = (covariance @ left.pull)[i] * unknowns[i].sd, np.sqrt(covariance[i, i])
+    assert (mean, sd) == (pytest.approx((0.05, 0.2) if beside else (0.0, 1.0), abs=1e-3))

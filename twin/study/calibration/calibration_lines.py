@@ -6,7 +6,7 @@ from twin.num import as_given, num, readable
 from twin.recording.checks import losses, whose
 from twin.study.calibration.calibration_record import PARTS
 from twin.study.calibration.parts import WEATHER
-from twin.study.estimation.columns import FORM, LATE, SEA
+from twin.study.estimation.columns import FORM, LATE, SEA, owner_of
 from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
 from twin.study.track.jumps import jumps_in_words
@@ -20,7 +20,7 @@ OF_WHAT = {  # owner of a number that is no effect of the catalogue -> what it s
 
 def _of_what(name: str) -> str:
     """What a number of the baseline stands for, with a comma; "" of an effect."""
-    words = OF_WHAT.get(name.partition(".")[0])
+    words = OF_WHAT.get(owner_of(name))
     return f"{words}, " if words else ""
 
 

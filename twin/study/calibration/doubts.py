@@ -11,7 +11,7 @@ from twin.physics.effects import find, of_role
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation.box import at_an_end
-from twin.study.estimation.columns import NO_MODEL
+from twin.study.estimation.columns import NO_MODEL, owner_of
 
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
@@ -161,8 +161,8 @@ def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
 def _lasts(label: str) -> bool:
     """Whether it should be alike on these voyages: no part of the core (core.N_r, core.port.gain), and no
     weather."""
-    owner, _, _ = label.rpartition(".")
-    return label.partition(".")[0] not in ("core", *NO_MODEL) and not find(owner).is_weather()
+    owner = owner_of(label)
+    return owner not in ("core", *NO_MODEL) and not find(owner).is_weather()
 
 
 def _blind(between: Mapping[str, float]) -> list[str]:

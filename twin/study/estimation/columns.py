@@ -73,9 +73,12 @@ class Unknown:
         return self.name, *self.also
 
 
+def owner_of(label: str) -> str:
+    """The owner in a label; names of the core's own numbers may have a dot (core.port.gain), and effects."""
+    return "core" if label.startswith("core.") else label.rpartition(".")[0]
+
+
 FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the data cannot tell them apart
-
-
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
 FORM = "form"  # owner of what the core leaves out of calm water (form.py): the same
 SEA = "sea"  # owner of what one wave does at once (wave_induced.py): the same

@@ -19,6 +19,7 @@ from twin.study.estimation.columns import (
     core_unknowns,
     form_unknowns,
     lateness_unknowns,
+    owner_of,
     sea_unknowns,
 )
 from twin.study.estimation.innovations import NoiseModel, Normal, innovate
@@ -208,7 +209,7 @@ def _from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     stored = model.ship.notes.get("structural", {})
     # added when it was calibrated already
     since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))
-    place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
+    place = {label: i for i, label in enumerate(stored.get("labels", [])) if owner_of(label) not in since}
     size = len(unknowns)
     information, mean = np.eye(size), np.zeros(size)
     # by an earlier calibration
