@@ -12,7 +12,9 @@ from twin.physics.ship import load
 from twin.physics.state import Situation
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
+from twin.study.estimation import identifiability
 from twin.study.estimation.identifiability import (
+    angles,
     basis,
     observability,
     principal,
@@ -23,6 +25,7 @@ from twin.study.estimation.identifiability import (
 )
 from twin.study.estimation.observability import gramian
 from twin.study.estimation.residual_arrays import features, learned_force
+from twin.study.estimation.respond import steered
 from twin.study.track.track import track
 
 STEP = 1.25
@@ -170,3 +173,21 @@ def test_the_current_that_the_model_has_is_nudged_not_replaced(zigzag):
     model = Model.of(SHIP).but(find("Current").plausible(SHIP).but(north=0.5))
     t = track(zigzag, SHIP)
     assert observability(t, model)["as measured"]["rank"] == 11
+
+
+def test_a_gear_is_stepped_through_all_of_a_voyage_of_which_only_some_rows_are_used(zigzag, monkeypatch):
+    """Test: a slow steering gear, and a fourth of the zigzag's rows. Expected: the rudder of each row as it is
+    on the whole voyage, and the angles of all rows."""
+    t, model = track(zigzag, SHIP), Model.of(SHIP).but(find("SteeringLag").plausible(SHIP))
+    of_all, seen = angles(t, model), []
+
+    def learned(s):
+        seen.append(s.delta)
+        return np.column_stack([s.v_r])
+
+    monkeypatch.setattr(identifiability, "ROWS", t.whole.sum() // 4)
+    residual_angles(t, model, learned)
+    every = -(-t.whole.sum() // identifiability.ROWS)
+    np.testing.assert_array_equal(seen[0], steered(t, model)["delta"][t.whole][::every])
+    walk, all_rows = angles(t, model)["PropellerWalk"], of_all["PropellerWalk"]
+    assert walk["largest_deg"] == pytest.approx(all_rows["largest_deg"], abs=1.0)

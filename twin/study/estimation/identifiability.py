@@ -20,6 +20,7 @@ from twin.recording.voyage import Voyage
 from twin.study.estimation.columns import columns, core_unknowns
 from twin.study.estimation.observability import LENGTHS, UNKNOWNS, observability
 from twin.study.estimation.of_effect import effect_unknowns
+from twin.study.estimation.respond import keep_steered, steered
 from twin.study.track.track import Track, track
 
 ROWS = 1500  # of the voyage used for the angles
@@ -45,7 +46,7 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
     """For each force and flow that the voyage can feed: its angles to the span of the core's columns, and
     what of it lies inside.
     """
-    thin, known = _thinned(t), of_ship(model.ship)
+    thin, known = _thinned(t, model), of_ship(model.ship)
     scale = _axis_scale(model)
     core = basis(_stacked(columns(thin, model, core_unknowns(model), known)[0], scale))
     spans, out = {}, {}
@@ -73,9 +74,9 @@ def residual_angles(
     F_theta against F_D); with its last layer W (3, F) also how much of the learned force the core could
     give itself; of features that are nothing all along, which is a residual that is not believed, no axis.
     DataError: there are not as many features as samples."""
-    thin, known = _thinned(t), of_ship(model.ship)
+    thin, known = _thinned(t, model), of_ship(model.ship)
     A = columns(thin, model, core_unknowns(model), known)[0]
-    s = thin.situation()
+    s = thin.situation(**steered(thin, model))
     model.nu_dot(s)
     phi = np.asarray(features(s), float)
     if phi.shape[0] != len(thin):
@@ -136,13 +137,15 @@ def _axis_scale(model: Model) -> np.ndarray:
     return np.array([U * U / L, U * U / L, U * U / L**2])
 
 
-def _thinned(t: Track) -> Track:
+def _thinned(t: Track, model: Model) -> Track:
     """The track on at most ROWS of its rows with known controls (columns are pointwise, so the gaps do not
-    matter).
+    matter), and the model's gears stepped through all of these.
     """
-    rows = np.flatnonzero(t.whole)
-    rows = rows[:: max(1, -(-rows.size // ROWS))]
-    return t.where(rows)
+    whole = t.where(t.whole)
+    rows = np.arange(0, len(whole), max(1, -(-len(whole) // ROWS)))
+    thin = whole.where(rows)
+    keep_steered(thin, model, whole, rows)
+    return thin
 
 
 def text(result: Mapping[str, Any]) -> list[str]:
