@@ -22,6 +22,7 @@ from bench.fleet.fleet_page import lines
 from bench.fleet.kept_ships import of_families
 from bench.fleet.plausibility import build
 from bench.fleet.voyage_plan import VOYAGES, plan, references, sailed
+from twin.physics.effect import Effect
 from twin.physics.effects import catalogue, of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import NO_MODEL, Unknown
@@ -129,9 +130,8 @@ def of_ship_file(path: Path) -> OneShip:
     )
 
 
-def _if_it_can(effect: type, model: Model) -> Iterable[Unknown]:
-    there = all(getattr(model.ship, need, None) is not None for need in effect.needs_ship)
-    return effect_unknowns(effect, model) if there else ()
+def _if_it_can(effect: type[Effect], model: Model) -> Iterable[Unknown]:
+    return () if effect.lacking(model.ship) else effect_unknowns(effect, model)
 
 
 def learned(ships: Sequence[OneShip]) -> dict[str, float]:

@@ -96,18 +96,9 @@ def param(
     its form and meaning."""
     if of is not None and of not in SCALES:
         raise ValueError(f"of={of!r}: one of {SCALES}")
-    meta = {
-        "default": default,
-        "unit": unit,
-        "lo": lo,
-        "hi": hi,
-        "sd": abs(default - null) if sd is None else sd,
-        "null": null,
-        "of": of,
-        "form": form,
-        "input": input,
-        "doc": doc,
-    }
+    sd = abs(default - null) if sd is None else sd
+    meta = {"default": default, "unit": unit, "lo": lo, "hi": hi, "sd": sd, "null": null, "of": of}
+    meta |= {"form": form, "input": input, "doc": doc}
     # none of it is none on any ship
     return field(default=MISSING if of and default else default, metadata=meta, kw_only=True)
 
@@ -180,6 +171,11 @@ class Effect:
         return cls(**{p.name: p.null * p.scale(ship) for p in cls.params()})
 
     @classmethod
+    def lacking(cls, ship: ShipLike) -> tuple[str, ...]:
+        """The particulars for want of which it cannot be sized on this ship."""
+        return tuple(name for name in cls.needs_ship if getattr(ship, name, None) is None)
+
+    @classmethod
     def of_recorded_weather(cls) -> bool:
         """Whether its cause is weather or water that was recorded: the cause is the voyage's, and its numbers
         are the ship's answer to it."""
@@ -225,12 +221,11 @@ class Effect:
                     f"{where}effects.{name}.{p.name} = {as_given(value)}{unit} lies outside its box "
                     f"[{as_given(lo)}, {as_given(hi)}]. Correct the number, or remove [effects.{name}]."
                 )
-        for particular in self.needs_ship:
-            if getattr(ship, particular, None) is None:
-                raise SettingsError(
-                    f"{where}effects.{name} needs {particular}. Add it under [particulars], "
-                    f"or remove [effects.{name}]."
-                )
+        for particular in self.lacking(ship):
+            raise SettingsError(
+                f"{where}effects.{name} needs {particular}. Add it under [particulars], "
+                f"or remove [effects.{name}]."
+            )
 
 
 class Force(Effect):

@@ -1,5 +1,7 @@
 """What a voyage can tell: a straight run tells less than a zigzag, and look-alikes are named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -191,3 +193,9 @@ def test_a_gear_is_stepped_through_all_of_a_voyage_of_which_only_some_rows_are_u
     np.testing.assert_array_equal(seen[0], steered(t, model)["delta"][t.whole][::every])
     walk, all_rows = angles(t, model)["PropellerWalk"], of_all["PropellerWalk"]
     assert walk["largest_deg"] == pytest.approx(all_rows["largest_deg"], abs=1.0)
+
+
+def test_wind_on_a_ship_whose_windage_nobody_knows_has_no_angle(zigzag, told):
+    bare = replace(SHIP, A_F=None, A_L=None)
+    found = angles(track(zigzag, bare), Model.of(bare))
+    assert set(told["angles"]) - set(found) == {"Wind"}

@@ -224,4 +224,4 @@ def unjudged_because(
     lacking = [tuple(n for n in effect.needs if n in t.missing()) for t in tracks]
     if all(lacking):
         return min(lacking, key=len)
-    return tuple(n for n in effect.needs_ship if getattr(model.ship, n, None) is None)
+    return effect.lacking(model.ship)

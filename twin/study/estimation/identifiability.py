@@ -53,6 +53,8 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
     for name, kind in known.items():
         if kind.kind not in ("Force", "Flow") or t.missing().intersection(kind.needs):
             continue
+        if kind.lacking(model.ship):
+            continue
         span = _stacked(columns(thin, model, effect_unknowns(kind, model), known)[0], scale)
         if np.any(span):
             spans[name] = span

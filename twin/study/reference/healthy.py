@@ -86,11 +86,7 @@ def left_out_scores(
     if len(tracks) < 2:
         return []
     kinds, its = dict(catalogue), {type(e) for e in model.effects}
-    names = [
-        n
-        for n, e in kinds.items()
-        if always_weighed(e, its) and all(getattr(model.ship, k, None) is not None for k in e.needs_ship)
-    ]
+    names = [n for n, e in kinds.items() if always_weighed(e, its) and not e.lacking(model.ship)]
     effects = tuple(u for n in names for u in effect_unknowns(kinds[n], model))
     rough = rough_unknowns(model)
     unknowns = with_effects((*known.unknowns, *rough), effects, model, kinds)

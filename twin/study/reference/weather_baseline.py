@@ -41,9 +41,7 @@ def as_usual(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, 
 def _strength(track: Track, model: Model, effect: type[Effect]) -> float | None:
     """Root mean square over the voyage; None where its cause was not measured, or the ship's particulars lack
     what it needs."""
-    if track.missing().intersection(effect.needs) or any(
-        getattr(model.ship, name, None) is None for name in effect.needs_ship
-    ):
+    if track.missing().intersection(effect.needs) or effect.lacking(model.ship):
         return None
     here = model.without_inputs(track.missing())[0]
     rates = effect.strength(track.situation(**steered(track, here)), here)
