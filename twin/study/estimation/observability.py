@@ -59,21 +59,22 @@ def gramian(answer: np.ndarray) -> dict[str, Any]:
     S = answer.reshape(-1, answer.shape[-1])
     _, size, directions = np.linalg.svd(S, full_matrices=True)
     size = np.append(size, np.zeros(len(directions) - size.size))
+    least = max(size[-1] / size[0], 1e-12) if size[0] else 1e-12  # where nothing was read, nothing answers
     weakest = directions[-1] * np.sign(directions[-1][np.argmax(np.abs(directions[-1]))])
     order = np.argsort(-np.abs(weakest))
     after = np.sqrt(np.diag(np.linalg.inv(S.T @ S + np.eye(S.shape[1]))))
     return {
         "rank": int((size > UNSEEN * size[0]).sum()),
         "informative": int((size > 1.0).sum()),
-        "log10_condition": float(2.0 * np.log10(size[0] / max(size[-1], 1e-12 * size[0]))),
+        "log10_condition": float(-2.0 * np.log10(least)),
         "weakest": {UNKNOWNS[i]: float(round(weakest[i], 3)) for i in order if abs(weakest[i]) > 0.2},
         "still_unknown": {name: float(x) for name, x in zip(UNKNOWNS, after, strict=True)},
     }
 
 
 def sensitivities(t: Track, model: Model) -> list[np.ndarray]:
-    """For each window (K, 8, 11): what the readings answer, in sigmas, to a prior width of each.
-    DataError: no window has rudder and propeller throughout."""
+    """For each window (K, 8, 11): what the readings answer, in sigmas, to a prior width of each; a step at
+    which one was not measured answers nothing. DataError: no window has rudder and propeller throughout."""
     steps = max(int(LENGTHS * float(model.ship.scale("time")) / t.h), 8)
     starts = [k for k in range(0, len(t) - steps, steps) if t.whole[k : k + steps].all()]
     if not starts:
@@ -84,6 +85,7 @@ def sensitivities(t: Track, model: Model) -> list[np.ndarray]:
         _run(t, model, np.array(starts), steps, sign * NUDGE * prior_widths(model)) for sign in (1.0, -1.0)
     )
     answer = (up - down) / (2.0 * NUDGE) / t.sd[:, None]
+    answer[np.isnan(t.measured[starts + np.arange(steps)[:, None]])] = 0.0
     return [answer[:, w] for w in range(len(starts))]
 
 
