@@ -8,10 +8,11 @@ import pytest
 from twin.errors import SettingsError
 from twin.live.certificate.plant import seaway_of, usual_disturbance
 from twin.physics import ship as ships
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.reference.hierarchical import hierarchical_quantile
-from twin.study.reference.split import SplitVoyage, low_frequency, scores, section, window
+from twin.study.reference.split import SplitVoyage, force, low_frequency, scores, section, window
 
 STEP_S = 0.1
 
@@ -39,6 +40,27 @@ def test_a_sine_of_the_waves_period_is_found_as_motion_and_not_as_force(model):
     """Expected: 0.3 m/s of sway over 2 m of waves is 0.15 m/s a metre; no drift beyond that of calm water."""
     *drift, u, v, _, _ = scores(model, voyage(model, 0.3), usual_disturbance(model).calm)
     assert v == pytest.approx(0.15, rel=0.1) and u < 0.01 and drift == [0.0, 0.0, 0.0]
+
+
+def test_wind_blows_on_the_ship_over_ground_and_not_through_the_water():
+    """Test: the model's own run in a wind of 10 m/s from abeam and a stream of 1.5 m/s. Expected: the model that
+    has that wind lacks less than a thousandth of it."""
+    ship = ships.load("kvlcc2")
+    windy, n = Model.of(ship).but(find("Wind").plausible(ship)), 600
+    north, east = 1.0, -1.1
+    sea = windy.but(find("Current")(north=north, east=east))
+    air = {"wind_speed": 10.0, "wind_to": 1.5}
+    state, sailed = (0.0, 0.0, 0.2, 6.0, 0.0, 0.0), []
+    for _ in range(n):
+        sailed.append(state)
+        state = sea.step(state, Situation(delta=0.1, n=1.2, **air), STEP_S)
+    x = np.array(sailed).T
+    current = np.array([np.full(n, north), np.full(n, east)])
+    voyage = SplitVoyage(STEP_S, x[3:], x[2], {"delta": 0.1, "n": 1.2, **air}, current, 1.0, 8.0)
+    s = Situation(psi=x[2], u=x[3], v=x[4], r=x[5], **air)
+    push = windy.pushes[0].force(s, ship)
+    lacking = force(windy, voyage.nu, voyage.psi, voyage)[:, 2:-2]
+    assert np.all(np.abs(lacking).max(axis=1) < 0.01 * np.abs(np.array(push)).max(axis=1))
 
 
 def test_a_steady_force_is_found_as_drift(model):

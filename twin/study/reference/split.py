@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from twin.live.certificate.plant import DRIFT, MOTION, Row
 from twin.physics import core
+from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.reference.hierarchical import hierarchical_quantile
@@ -69,13 +70,9 @@ def force(model: Model, nu: Array, psi: Array, voyage: SplitVoyage) -> Array:
     s = Situation(psi=psi, u=nu[0], v=nu[1], r=nu[2])  # type: ignore[arg-type]
     for name, x in voyage.inputs.items():
         setattr(s, name, x)
-    c, si = np.cos(psi), np.sin(psi)
     north, east = voyage.current
-    u_c, v_c = north * c + east * si, east * c - north * si
-    s.u, s.v = nu[0] - u_c, nu[1] - v_c  # type: ignore[assignment]
-    through = np.array([np.broadcast_to(x, psi.shape) for x in model.nu_dot(s)])
-    # over ground: r x nu_c beside it
-    known = through + np.array([nu[2] * v_c, -nu[2] * u_c, np.zeros_like(psi)])
+    there = model.but(of_role("stream").absent(model.ship).but(north=north, east=east))  # type: ignore[arg-type]
+    known = np.array([np.broadcast_to(x, psi.shape) for x in there.nu_dot(s)])
     lacking = np.gradient(nu, voyage.step_s, axis=1) - known
     return np.array(core.force_for(lacking[0], lacking[1], lacking[2], model.c), dtype=np.float64)
 
