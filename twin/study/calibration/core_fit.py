@@ -27,7 +27,7 @@ from twin.study.calibration.usual import usual
 from twin.study.calibration.ways import FittedShip, best_way
 from twin.study.estimation.columns import Unknown, core_unknowns
 from twin.study.estimation.fit import Fit, fit
-from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.reference.derivatives import first_prior, informed_by, noted, with_derivatives
 from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.reading import fitted_parts
@@ -250,7 +250,7 @@ def _core(rough: RoughCore, progress: Progress, start: NoiseModel | None) -> Cor
     ship, tracks, begun, unknowns = rough.ship, rough.tracks, rough.fit, rough.fit.unknowns
     progress("estimating the noise model")
     noise_model = structural_noise(begun.lines, unknowns, start)
-    temper = temper_of(begun.normal, unknowns)
+    temper = temper_of(innovate(begun.lines, [noise_model])[0], unknowns)
     progress("fitting again with this noise model")
     read = fitted_parts(tracks, begun.model)
     found = fit(read, begun.model, unknowns, of_ship(ship), noise_model, temper=temper, smooth=True)
