@@ -11,10 +11,12 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.calibration.own_deviation import own_deviation
 from twin.study.calibration.ways import COMPASS, best_way
-from twin.study.estimation.columns import core_unknowns
-from twin.study.estimation.fit import fit
+from twin.study.estimation.columns import core_unknowns, with_values
+from twin.study.estimation.fit import Fit, fit, present
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.reference.nuisance import TEMPER
+from twin.study.estimation.linear import linearise
+from twin.study.reference.nuisance import TEMPER, instruments
+from twin.study.reference.steering_gear import gear_unknowns, gears_of
 from twin.study.track.track import track
 
 BOAT, SECONDS = "screws and bow thruster", 120.0
@@ -70,3 +72,24 @@ def test_a_curve_that_no_prediction_asks_for_leaves_nothing_in_the_ship_file():
     assert best.ship.notes == {"effects": {}, "structural": {"beside_effects": []}}
     kept = best_way(ship, [], [], held_out, by="steps", found_curve=False, progress=lambda text: None)
     assert kept.ship is ship
+
+
+def test_a_curve_is_asked_for_about_the_model_that_was_found(monkeypatch):
+    """Test: a fit whose lags and instruments were found off their priors' centres. Expected: every number stands
+    where the model has it."""
+    ship, off = ship_of(BOAT), []
+    known, model = of_ship(ship), Model.of(ship)
+    faults = [u for u in instruments(model, known) if u.owner == "HeadingBias"]
+    lags = gear_unknowns(model.but(*(e.plausible(ship) for e in gears_of(ship)[0])))
+    every = (*core_unknowns(model), *faults, *lags)
+    tracks = [track(sailed(BOAT, 1, 60.0, 3), ship)]
+    there = with_values(model, every, [u.centre + 0.5 * u.sd for u in every], known)
+    found = Fit(there, every, np.empty(0), np.empty((0, 0)), (), None, 0.0)
+
+    def noted(t, model, unknowns, known):
+        off.extend(u.label for u in unknowns if u.centre != present(model, u))
+        return linearise(t, model, unknowns, known)
+
+    monkeypatch.setattr("twin.study.calibration.own_deviation.linearise", noted)
+    own_deviation(tracks, found, known, TEMPER)
+    assert faults and lags and off == []

@@ -173,7 +173,7 @@ class _Problem:
 
     def start(self, begun: Fit | None) -> np.ndarray:
         late = begun.late if begun else {}
-        now = [late.get(u.label, _present(self.model, u)) for u in self.unknowns]
+        now = [late.get(u.label, present(self.model, u)) for u in self.unknowns]
         return self.nearest((np.array(now) - self.centre) / self.sd)
 
     def nearest(self, z: np.ndarray) -> np.ndarray:
@@ -248,7 +248,7 @@ class _Problem:
         )
 
 
-def _present(model: Model, unknown: Unknown) -> float:
+def present(model: Model, unknown: Unknown) -> float:
     """The unknown's value in the model as it stands; its centre where the effect is not there."""
     if unknown.owner == "core":
         return float(model.ship.derivative(unknown.name))

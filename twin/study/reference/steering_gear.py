@@ -19,7 +19,7 @@ from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship_like import ShipLike
 from twin.study.estimation.columns import Unknown, with_values
-from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
+from twin.study.estimation.fit import Catalogue, Fit, evidence, fit, present
 from twin.study.estimation.in_order import likeliest_in_order
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear, linearise
@@ -87,8 +87,7 @@ def with_or_without_gear(
         if _there(gears, found.model):
             continue
         for begun in (model.but(*found.model.lags), found.model):
-            # of a ship with one rudder what the core was believed to be, as ever
-            free = about(unknowns, begun) if model.ship.actuators else unknowns
+            free = about(unknowns, begun)
             with_gear = _geared(begun, gears, tracks, free, known, temper)
             if with_gear is begun:
                 with_gear = _apart(begun, gears, tracks, free, known, temper)
@@ -215,7 +214,5 @@ def _apart(
 
 
 def about(unknowns: Sequence[Unknown], model: Model) -> list[Unknown]:
-    """The same numbers, those of the core where the model has them."""
-    return [
-        replace(u, centre=float(model.ship.derivative(u.name))) if u.owner == "core" else u for u in unknowns
-    ]
+    """The same numbers, centred where the model has them: a column is about its number's centre."""
+    return [replace(u, centre=present(model, u)) for u in unknowns]
