@@ -97,7 +97,7 @@ def head(rows: Sequence[Row]) -> list[str]:
         *wrap(about, 108),
         "",
         "```sh",
-        "python -m bench.fleet run FOLDER --seeds 0-3 --voyages 8 --workers 2     # two hours",
+        "python -m bench.fleet run FOLDER --seeds 0-2 --voyages 8 --workers 2     # 80 minutes of two cores",
         "python -m bench.fleet keep FOLDER",
         "python -m bench.fleet run OTHER --seeds 16-18 --voyages 8 --workers 2",
         "python -m bench.fleet keep OTHER --new",

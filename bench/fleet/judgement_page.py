@@ -1,5 +1,5 @@
-"""docs/results/judgement.md, as far as it is made of the kept answers (keep_answers.py): of the fleet to
-which the probabilities are fitted, and of ships that no fit had seen."""
+"""docs/results/judgement.md, as far as it is made of the kept answers (keep_answers.py): of the fleet, and of
+ships that no fit had seen when they were asked."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -62,11 +62,11 @@ def _figures(rows: Sequence[Row], new: Sequence[Row]) -> list[str]:
     ):
         body.append((name, goal, *(of(batch) for batch in batches)))
     text = (
-        f"{len(rows)} voyages of the ships to which the probabilities that are told are fitted, as the table "
-        f"of today decides them; {len(new)} of [new ships](new-ships.md), as they were answered when no fit "
-        "and no look had seen any; and both."
+        f"{len(rows)} voyages of ships of which earlier fits had seen voyages, as the table of today decides "
+        f"them; {len(new)} of [new ships](new-ships.md), as they were answered when no fit and no look had "
+        "seen any; and both, to which the probabilities that are told are fitted by now."
     )
-    titles = (f"ships of the fit ({len(rows)})", f"new ships ({len(new)})", f"both ({len(rows) + len(new)})")
+    titles = (f"earlier ships ({len(rows)})", f"new ships ({len(new)})", f"both ({len(rows) + len(new)})")
     return lines("Figures", text, ("", "goal", *titles), body)
 
 
@@ -127,7 +127,7 @@ def _moved(rows: Sequence[Row]) -> list[str]:
             at[value] = decision_fit.outcome(rows, decision_fit.by_table)
     body = [(name, *(f"{of[name][0]} of {of[name][1]}" for of in at.values())) for name in at[STRICTER[0]]]
     text = (
-        f"{len(rows)} voyages of the ships of the fit, decided by the table of today with `SIGNIFICANT` as "
+        f"{len(rows)} voyages of the earlier ships, decided by the table of today with `SIGNIFICANT` as "
         "it is (6) and moved; what was found by two searches is left out: each was decided by its own facts."
     )
     titles = ("", *(f"`SIGNIFICANT` {value:g}" for value in STRICTER))

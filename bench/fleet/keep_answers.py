@@ -1,6 +1,6 @@
 """Answers of the fleet put into docs/results, of which `python docs/results_page.py` makes the page on the
-judgement: `python -m bench.fleet keep FOLDER`, to which the probabilities that are told are fitted; or those
-of ships that nothing is fitted to: `python -m bench.fleet keep FOLDER --new`."""
+judgement: `python -m bench.fleet keep FOLDER`; or those of ships that no fit had seen when they were asked:
+`python -m bench.fleet keep FOLDER --new`."""
 
 import argparse
 import json
@@ -17,7 +17,9 @@ FIT = RESULTS / "fleet_fit.json"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, nargs="+", help="folders with rows.jsonl")
-    parser.add_argument("--new", action="store_true", help="of ships to which nothing is fitted")
+    parser.add_argument(
+        "--new", action="store_true", help="of ships that no fit had seen when they were asked"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -130,18 +130,18 @@ def _held_out(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def fitted(found: Sequence[AnswerExample], new: Sequence[AnswerExample] = ()) -> dict[str, Any]:
-    """Of each question: the weights fitted to all that was `found`, and the reliability with each family held
-    out; and what those weights are worth on `new` ships."""
+    """Of each question: the weights fitted to all, and the reliability with each form of hull held out; and
+    what those that are fitted without the `new` ships are worth on them."""
     out = {}
     for name, question in QUESTIONS.items():
         own, others = ([e for e in some if e.question == name] for some in (found, new))
-        w = logistic(*_arrays(own))
+        w = logistic(*_arrays([*own, *others]))
         out[name] = {
             "weights": dict(zip(("constant", *question.facts), [round(float(v), 2) for v in w], strict=True)),
-            "held_out": _reliability(*_held_out(own)),
+            "held_out": _reliability(*_held_out([*own, *others])),
         }
         if others:
-            x, y = _arrays(others)
+            (x, y), w = _arrays(others), logistic(*_arrays(own))
             out[name]["new"] = _reliability(1 / (1 + np.exp(-(w[0] + x @ w[1:]))), y)
     return out
 

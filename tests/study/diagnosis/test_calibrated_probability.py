@@ -7,7 +7,7 @@ import pytest
 
 from bench.fleet import kept_rows, probability_fit
 from bench.fleet.decision_fit import with_facts
-from bench.fleet.keep_answers import FLEET
+from bench.fleet.keep_answers import FLEET, NEW_SHIPS
 from tests.study.diagnosis.test_decision import cause, facts
 from twin.study.diagnosis import calibrated_probability as told
 from twin.study.diagnosis.decision import decide
@@ -19,7 +19,7 @@ def said(f, posterior=0.97):
 
 @pytest.fixture(scope="module")
 def fitted():
-    rows = with_facts(kept_rows.read(*FLEET))
+    rows = with_facts([*kept_rows.read(*FLEET), *kept_rows.read(*NEW_SHIPS)])
     return probability_fit.fitted(probability_fit.examples(rows))
 
 
