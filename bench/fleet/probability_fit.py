@@ -170,9 +170,7 @@ def page_lines(found: Mapping[str, Any]) -> list[str]:
             f"What the fit to ships of other forms says, and how often it is so. Fitted to all: {weights}. "
             f"Mean log likelihood with the form left out: {held['log_likelihood']:.3f}"
         )
-        text += (
-            f"; of what the fit to all says of the new ships: {new['log_likelihood']:.3f}." if new else "."
-        )
+        text += f"; on the new ships, of a fit without them: {new['log_likelihood']:.3f}." if new else "."
         told = held["so"] | (new["so"] if new else {})
         body = [
             (bin, *(cell for of in (held, new) if of for cell in _cells(of["so"].get(bin))))

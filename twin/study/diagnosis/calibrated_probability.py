@@ -3,9 +3,9 @@
 The posterior of a cause is Bayesian under the stated noise model, and a model that errs in form believes
 itself too much: with a posterior of 0.95 or more a cause was there four times of five on random ships of
 eight families (bench/fleet). What is told is therefore how often it was: logistic models, monotone in a few
-facts, fitted to the answers on those ships; what they say of a family that was left out of the fit stands in
-docs/results/judgement.md. They hold for ships as often faulty as there, a third healthy, and nothing is told
-beyond what so many answers can show.
+facts, fitted to the answers on those ships; what they say of a form of hull that was left out of the fit
+stands in docs/results/judgement.md. They hold for ships as often faulty as there, a third healthy, and
+nothing is told beyond what so many answers can show.
 """
 
 from collections.abc import Callable, Mapping
@@ -29,29 +29,16 @@ def _clearness(f: Facts, c: Cause, d: Decision) -> float:
     return log(1.0 + min(c.significance, CLEAREST_SD))
 
 
-def _left_little(f: Facts, c: Cause, d: Decision) -> float:
-    return -log(max(1.0 if f.left.error is None else f.left.error, 0.5))
-
-
 FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a cause likelier as it grows
     # a third of the log odds of the posterior that it is there, and lasts
     "log_odds": lambda f, c, d: log_odds(c.probability * f.lasts(c)),
     "clearness": _clearness,  # log of one and its significance
-    "left_little": _left_little,  # log of the expected error over what the explanation leaves
     "named": lambda f, c, d: float(c.effect in d.missing),  # whether the table of rules names it
-    "of_known_form": lambda f, c, d: float(not f.resembles),  # whether nothing nameless is known by its form
 }
-OF_CAUSE = {  # of the explanation
-    "constant": -4.06,
-    "log_odds": 0.7,
-    "clearness": 0.79,
-    "left_little": 0.04,
-    "named": 0.99,
-    "of_known_form": 1.73,
-}
-OF_CAUSE_BESIDE = {"constant": -1.3, "log_odds": 0.96}  # the explanation does without it
-OF_NOTHING = {"constant": -1.13, "log_odds": 1.22, "unnamed": 1.22}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -0.95, "log_odds": 0.68, "verdict": 1.22}  # what is there has no name
+OF_CAUSE = {"constant": -3.19, "log_odds": 1.31, "clearness": 0.83, "named": 1.11}  # of the explanation
+OF_CAUSE_BESIDE = {"constant": -1.09, "log_odds": 0.93}  # the explanation does without it
+OF_NOTHING = {"constant": -0.98, "log_odds": 1.21, "unnamed": 1.44}  # no cause of ship and instruments
+OF_UNKNOWN = {"constant": -0.8, "log_odds": 1.24, "verdict": 0.36}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
