@@ -159,7 +159,7 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     why = refusal(ship, [e | far for e, far in by_horizon], first.core.unexcited)
     if words == LAST and not why:
         tell("once more, with every voyage")
-        last = fitted_core(every, held, ship, tell, first.chosen.way, first)
+        last = fitted_core(every, held, ship, tell, begun=first)
     done = last.calibrated(tell, first)
     r, why = done.result, why or away_on_references(done.ship, last.core.unexcited)
     share, fitted_to = r["floor"]["share"], len(last.core.tracks)

@@ -80,6 +80,11 @@ class FittedCore:
     held_out: list[dict[str, Any]]  # by horizon, the error before the fit beside that after it
     instruments: dict[str, Any]  # numbers of instruments that became a part of the ship
 
+    @property
+    def moved(self) -> bool:
+        """Whether predictions were better with the antenna where it was found."""
+        return self.core.antenna in self.chosen.ship.effects
+
     def once_more(self) -> Begun:
         """With what a fit of these voyages and more begins."""
         return Begun(self.core.model, self.core.noise_model, self.core.antenna, self.curve)
@@ -120,21 +125,27 @@ def fitted_core(
 ) -> FittedCore:
     """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
     one of FITTED_BY; None: the one that predicts what was held out better. `begun`: what was fitted to a part
-    of them, with which this begins; None: as for any ship."""
+    of them, with which this begins, and which chose by what was held out from it: the way, and whether what
+    was found of antenna and compass is the ship's; None: as for any ship."""
     first, sailed = ship, [s.track for s in fitted]
     progress("asking how the instruments go together, whatever the ship is")
     own = own_instruments(fitted, ship)
     ship = own.ship
     core, curve = _with_its_antenna(sailed, ship, progress, begun.once_more() if begun else None)
     held_out = [(swung(t, core.model, gear=False), first) for t, first in held_out]
-    steps = remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)
+    beside, antenna = _beside(ship, core), core.antenna
+    if begun is None:
+        beside = placed(beside, antenna, held_out)
+    elif antenna is not None and begun.moved:
+        beside = beside.with_effects(antenna)
     chosen = best_way(
-        steps,
+        remembering(beside, core, fitted),
         core.tracks,
         [d.unknown for d in core.derivatives if d.excited],
         held_out,
         by=by,
         found_curve=bool(curve),
+        like=begun.chosen if begun else None,
         progress=progress,
     )
     before = errors(Model.of(first), held_out).by_horizon

@@ -49,10 +49,14 @@ def best_way(
     by: str | None,
     found_curve: bool,
     progress: Progress,
+    like: FittedShip | None = None,
 ) -> FittedShip:
     """The best of the ships to choose from: fitted by steps, or from there along the path; and, where the
-    compass's deviation was found beside the core, without it, for the next voyage may not have it."""
+    compass's deviation was found beside the core, without it, for the next voyage may not have it. `like`:
+    the one that was chosen before all that was held out was fitted too, whose way and curve stay."""
     begun = [steps, *([_without_curve(steps)] if found_curve else [])]
+    if like:
+        by, begun = like.way, [s for s in begun if deviates(s) == deviates(like.ship)]
     ships = [("steps", s, s) for s in begun] if by != "paths" or not excited else []
     if by != "steps" and excited:
         progress("fitting along the path")
