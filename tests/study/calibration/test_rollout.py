@@ -78,6 +78,27 @@ def test_a_core_that_predicts_well_stays_where_it_is(true):
     assert max(moved) < 0.3 and miss(track, found) <= 1.05 * miss(track, true) + 0.05
 
 
+@pytest.mark.parametrize("every", [120, 90, 60])
+def test_what_was_not_measured_makes_no_error_smaller(true, every):
+    """Test: a break in the controls every so many steps, so that up to most of the predictions cannot be judged, and
+    no log. Expected: the error along the track that is usual on the whole one; what was not measured is no error."""
+    track = sailed(true, 80.0)
+    wrong = Model(true.ship.with_derivatives(X_uu=0.7 * float(true.ship.derivative("X_uu"))))
+    unknowns = [u for u in core_unknowns(wrong) if u.name in NAMES]
+    measured = track.measured.copy()
+    measured[:, 3] = np.nan
+    broken = replace(track, measured=measured, whole=np.arange(len(track)) % every > 5)
+    whole, holed = (PathProblem([t], wrong, unknowns, {}) for t in (track, broken))
+    z = np.zeros(len(unknowns))
+    for problem in (whole, holed):
+        problem.weigh(z)
+    np.testing.assert_allclose(holed.scale[:, 0], whole.scale[:, 0], rtol=0.25)
+    off = holed.off(z)
+    assert np.isnan(off[:, -1, 0]).mean() > 0.25 and np.isnan(off[..., 3]).all()
+    residual = holed.residual(z).reshape(off.shape)
+    assert (residual[np.isnan(off)] == 0.0).all() and np.abs(residual).max() < 8.0
+
+
 def test_a_number_at_the_end_of_its_box_is_its_end_to_the_bit(true):
     """An end in widths of a prior is a rounding error off, and no ship file may hold what lies outside."""
     (own,) = (u for u in core_unknowns(true) if u.name == "X_udot")

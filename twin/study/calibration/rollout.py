@@ -54,7 +54,7 @@ class PathProblem:
         return list(np.clip(self.centre + self.sd * z, self.lo, self.hi).tolist())
 
     def off(self, z: np.ndarray) -> np.ndarray:
-        """(W, K, 4) errors of all predictions, zero where nothing was measured."""
+        """(W, K, 4) errors of all predictions, NaN where nothing was measured."""
         return self.off_each(z[None])[0]
 
     def off_each(self, Z: np.ndarray) -> np.ndarray:
@@ -72,22 +72,25 @@ class PathProblem:
         for t in self.tracks:
             of_track = model.without_inputs(t.missing())[0]
             each = coarse_each(t, of_track, len(Z), ahead, LEADS, ahead / OVERLAP)
-            parts.append([np.nan_to_num(w.off()[..., COMPARED_STATES]).transpose(1, 0, 2) for w in each])
+            parts.append([w.off()[..., COMPARED_STATES].transpose(1, 0, 2) for w in each])
         return np.concatenate(parts, axis=1)
 
     def weigh(self, z: np.ndarray) -> None:
-        """Sets the usual size of an error, by lead and channel, as it is at z (P,); neighbouring predictions
-        share most of theirs."""
-        usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
+        """Sets the usual size of an error that was measured, by lead and channel, as it is at z (P,);
+        neighbouring predictions share most of theirs."""
+        off = np.abs(self.off(z))
+        usual, measured = np.zeros(off.shape[1:]), np.isfinite(off).any(0)
+        usual[measured] = 1.4826 * np.nanmedian(off[:, measured], axis=0)
         self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(COMPARED_STATES) * LEADS * OVERLAP)
 
     def residual(self, z: np.ndarray) -> np.ndarray:
-        """(R,) errors at z (P,) in units of their usual size; what is far off counts as eight times that."""
+        """(R,) errors at z (P,) in units of their usual size; what is far off counts as eight times that, and
+        what was not measured as none."""
         return self.residual_each(z[None])[0]
 
     def residual_each(self, Z: np.ndarray) -> np.ndarray:
         """(Q, R) the same at each of these places (Q, P)."""
-        return (self.off_each(Z) / self.scale).clip(-8.0, 8.0).reshape(len(Z), -1)
+        return np.nan_to_num(self.off_each(Z) / self.scale).clip(-8.0, 8.0).reshape(len(Z), -1)
 
     def cost(self, residual: np.ndarray, z: np.ndarray) -> float:
         """-log probability of these errors (R,) at z (P,), but for a constant."""
