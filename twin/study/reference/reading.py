@@ -20,7 +20,8 @@ FITTED_SEGMENTS = 60  # and of all voyages that a core is fitted to (decision 00
 
 
 def fitted_parts(tracks: Sequence[Track], model: Model) -> list[Track]:
-    """What of these tracks a core is fitted to: an even choice of FITTED_SEGMENTS of all together."""
+    """What of these tracks a core is fitted to: an even choice of FITTED_SEGMENTS of all together, and at
+    least one of each."""
     return read_parts(tracks, float(model.ship.scale("time")), FITTED_SEGMENTS)
 
 

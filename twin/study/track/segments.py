@@ -17,8 +17,8 @@ BEFORE_LENGTHS, AFTER_LENGTHS = 4, 2  # and so much of what is about it is kept
 
 
 def segments(tracks: Sequence[Track], time_s: float, most: int | None = None) -> list[tuple[int, int, int]]:
-    """(track, first, last) of the stretches that are filtered on their own, or an even choice of `most`; a
-    break in the controls ends one. `time_s`: L/U_0."""
+    """(track, first, last) of the stretches that are filtered on their own, or an even choice of `most` and
+    one more of each track that this passes over; a break in the controls ends one. `time_s`: L/U_0."""
     out = []
     for i, track in enumerate(tracks):
         length = max(32, int(SEGMENT_LENGTHS * time_s / track.h))
@@ -28,7 +28,11 @@ def segments(tracks: Sequence[Track], time_s: float, most: int | None = None) ->
             cuts = np.linspace(start, stop, pieces + 1).astype(int)
             out += [(i, int(a), int(b)) for a, b in pairwise(cuts) if b - a >= FEWEST_STEPS]
     if most is not None and len(out) > most:
-        out = [out[i] for i in np.linspace(0, len(out) - 1, most).astype(int)]
+        chosen, of = set(np.linspace(0, len(out) - 1, most).astype(int).tolist()), [i for i, _, _ in out]
+        for i in set(of) - {of[k] for k in chosen}:
+            first, count = of.index(i), of.count(i)
+            chosen.add(first + count // 2)
+        out = [out[k] for k in sorted(chosen)]
     return out
 
 
