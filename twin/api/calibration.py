@@ -148,7 +148,7 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
     for s in every:
         long_enough(s.track, ship)
-    fitted, held, words = split(every, kept)
+    fitted, held, words = split(every, kept, ship)
     tell = Stages(tell, len(every) / len(fitted) if words == LAST else None)
     try:
         with np.errstate(invalid="ignore"):  # the algebra says it, too

@@ -7,25 +7,37 @@ from typing import Any
 
 import numpy as np
 
+from twin.errors import DataError
 from twin.physics.model import Model
+from twin.physics.ship import Ship
 from twin.study.prediction.openloop import HORIZONS_S, ends
 from twin.study.reference.sailed import Sailed, fed
+from twin.study.track.segments import FEWEST_STEPS, segments
 from twin.study.track.track import Track
 
 HeldOut = Sequence[tuple[Track, int]]  # tracks, each with the first grid step that was not used for the fit
 LAST = "the last third of the voyages; the ship that is written was then fitted to all"
 BANDS = (("straight", 0.0, 0.1), ("turning", 0.1, 0.4), ("turning hard", 0.4, np.inf))  # |r| L/U_0
+FIRST = 0.7  # of each voyage is fitted where there are only one or two
 
 
-def split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], HeldOut, str]:
-    """What is fitted, what is held out, and how to say so."""
+def split(fitted: list[Sailed], held_out: list[Sailed], ship: Ship) -> tuple[list[Sailed], HeldOut, str]:
+    """What is fitted, what is held out, and how to say so. DataError: the part of a voyage that is fitted is
+    nowhere whole for long enough."""
     if held_out:
         return fitted, [(s.track, 0) for s in held_out], "the voyages given with --held-out"
     if len(fitted) > 2:
         keep = len(fitted) - max(1, len(fitted) // 3)
         return fitted[:keep], [(s.track, 0) for s in fitted[keep:]], LAST
-    cuts = [int(0.7 * len(s.track)) for s in fitted]
+    cuts = [int(FIRST * len(s.track)) for s in fitted]
     parts = [replace(s, track=s.track.part(0, cut)) for s, cut in zip(fitted, cuts, strict=True)]
+    for t in (s.track for s in parts):
+        if not segments([t], float(ship.scale("time"))):
+            raise DataError(
+                f"{t.name}: in its first {100 * FIRST:.0f} %, which is fitted, rudder, shaft and readings "
+                f"are nowhere there together for {FEWEST_STEPS * t.h:.0f} s without a gap. Leave it out, or "
+                "give another voyage with --held-out: then all of this one is fitted."
+            )
     return (
         parts,
         [(s.track, cut) for s, cut in zip(fitted, cuts, strict=True)],
