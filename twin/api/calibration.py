@@ -16,7 +16,7 @@ from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import fitted_core
-from twin.study.calibration.doubts import doubts, resistance_of
+from twin.study.calibration.doubts import doubts_of
 from twin.study.calibration.held_out import LAST, knowing_nothing, split
 from twin.study.calibration.stages import Stages
 from twin.study.calibration.worse import away_on_references, refusal
@@ -162,9 +162,7 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
         last = fitted_core(every, held, ship, tell, begun=first)
     done = last.calibrated(tell, first)
     r, why = done.result, why or away_on_references(done.ship, last.core.unexcited)
-    share, fitted_to = r["floor"]["share"], len(last.core.tracks)
-    drag = resistance_of(ship), resistance_of(done.ship)
-    found = doubts(r["derivatives"], r["held_out"], share, r["usual"], r["between_voyages"], fitted_to, drag)
+    found = doubts_of(r, ship, done.ship, len(last.core.tracks))
     said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
     return Calibration(ship if why else done.ship, data=r | said)
 

@@ -4,7 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from twin.study.calibration.doubts import doubts, resistance_of
+from twin.num import num
+from twin.physics.model import Model
+from twin.study.calibration.doubts import doubts, doubts_of, resistance_of
+from twin.study.estimation.columns import core_unknowns
+from twin.study.reference.derivatives import Derivative, by_particulars, first_prior, with_derivatives
 
 FELL = {"horizon_s": 60.0, "windows": 9, "position_m": 1.0, "before_m": 2.0}
 FELL |= {"heading_deg": 1.0, "before_deg": 2.0}
@@ -65,3 +69,31 @@ def test_the_resistance_of_a_ship_is_that_of_its_hull_at_service_speed(kvlcc2):
     bare = replace(kvlcc2, derivatives=replace(kvlcc2.derivatives, X_u=0.0, X_uuu=0.0))
     by_hand = -0.5 * bare.rho * bare.L_pp * bare.T * bare.derivatives.X_uu * bare.U_0**2
     assert resistance_of(bare) == pytest.approx(by_hand)
+
+
+def fitted(ship, share):
+    """The ship after a calibration that leaves such shares of what its derivatives were, and what it tells."""
+    own = {u.name: first_prior(u, ship) for u in core_unknowns(Model.of(ship)) if u.name in share}
+    before = {name: float(ship.derivative(name)) for name in own}
+    after = with_derivatives(
+        ship, [Derivative(u, share[n] * before[n], 0.01 * abs(u.centre), 0.9) for n, u in own.items()]
+    )
+    rows = [
+        {"name": n, "before": before[n], "value": share[n] * before[n], "sd": 0.01, "excited": True}
+        for n in own
+    ]
+    said = {"derivatives": rows, "held_out": [FELL], "usual": [], "between_voyages": {}}
+    return after, doubts_of(said | {"floor": {"share": (0.03, 0.03, 0.03)}}, ship, after, 5)
+
+
+def test_a_ship_that_is_calibrated_again_is_still_held_against_its_particulars(kvlcc2):
+    """Test: a calibration that leaves a hundredth of resistance and lift, and a second one that leaves that nearly
+    as it is. Expected: both say so, of the same numbers by the particulars."""
+    bare = replace(kvlcc2, derivatives=replace(kvlcc2.derivatives, X_u=0.0, X_uuu=0.0))
+    once, said = fitted(bare, {"X_uu": 0.009, "Y_uv": 0.009})
+    again, said_again = fitted(once, {"X_uu": 0.95, "Y_uv": 0.95})
+    kN = f"by the particulars {num(resistance_of(bare) / 1e3, 3)} kN"
+    for lines in (said, said_again):
+        *_, lift, resistance = lines
+        assert lift.startswith("Y_uv is as good as none (") and kN in resistance
+    assert by_particulars(again).derivatives == bare.derivatives

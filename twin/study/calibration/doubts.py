@@ -12,6 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation.box import at_an_end
 from twin.study.estimation.columns import NO_MODEL, owner_of
+from twin.study.reference.derivatives import by_particulars
 
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
@@ -25,6 +26,22 @@ WRONG_SIGN_SE = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
 
 
+def doubts_of(result: Mapping[str, Any], ship: Ship, after: Ship, voyages: int) -> list[str]:
+    """Sentences on what --json holds of a calibration (`result`) of this ship, which is as `after` then; what
+    was fitted is held against the ship's particulars, also where it was calibrated before. `voyages`: how
+    many it was fitted to."""
+    first = by_particulars(ship)
+    return doubts(
+        [d | {"before": float(first.derivative(d["name"]))} for d in result["derivatives"]],
+        result["held_out"],
+        result["floor"]["share"],
+        result["usual"],
+        result["between_voyages"],
+        voyages,
+        (resistance_of(first), resistance_of(after)),
+    )
+
+
 def doubts(
     derivatives: Sequence[Mapping[str, Any]],
     held_out: Sequence[Mapping[str, Any]],
@@ -36,7 +53,8 @@ def doubts(
 ) -> list[str]:
     """Sentences; none when the calibration is as it should be. `usual`: lasting effects that it shows;
     `between`: by how many widths of their priors numbers differ from voyage to voyage; `voyages`: how many
-    it was fitted to; `resistance`: at service speed before and after [N]."""
+    it was fitted to; `resistance`: at service speed before and after [N]. What is `before` is what the
+    particulars give."""
     return [
         *_stopped(derivatives),
         *_backwards(derivatives),

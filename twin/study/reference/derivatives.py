@@ -66,6 +66,14 @@ def first_prior(unknown: Unknown, ship: Ship) -> Unknown:
     return unknown if centre is None else replace(unknown, centre=float(centre))
 
 
+def by_particulars(ship: Ship) -> Ship:
+    """The ship with the derivatives that it had before it was calibrated first, as far as its file keeps
+    them."""
+    model = Model.of(ship)
+    own = [first_prior(u, ship) for u in core_unknowns(model)]
+    return with_values(model, own, [u.centre for u in own], {}).ship
+
+
 def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
     """The ship with their values, standard errors and priors."""
     source = (
