@@ -1,6 +1,7 @@
 """`twin tube`: from voyages to the [tube] of a ship file, which the loop then says."""
 
 import json
+import shutil
 
 import pytest
 
@@ -12,6 +13,8 @@ from twin.api.json_keys import KEYS
 from twin.errors import DataError
 from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
+from twin.study.reference.derivatives import noted
+from twin.study.reference.sailed import read_all, samples_hash
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +71,27 @@ def test_a_replay_with_the_tube_says_how_it_was_kept(found, voyages, tmp_path):
 def test_a_voyage_given_twice_is_refused(voyages):
     with pytest.raises(DataError, match="same voyage"):
         twin.tube(twin.Ship.load("usv"), twin.read_voyages([voyages[0], voyages[0]]))
+
+
+def test_a_voyage_of_the_calibration_is_known_by_what_is_in_it_whatever_it_is_called(voyages, tmp_path):
+    """Test: a ship that was calibrated on the file v1, or in Python on its samples; a copy of that under another name
+    beside another voyage of the name v1. Expected: the copy is told, and not its namesake."""
+    copy, namesake = tmp_path / "copy.csv", tmp_path / "v1.csv"
+    shutil.copy(voyages[0], copy)
+    shutil.copy(voyages[1], namesake)
+    usv, (known,) = twin.Ship.load("usv"), read_all(voyages[:1], twin.Ship.load("usv"))
+    by_file, by_samples = (
+        noted(usv, "structural", {"voyages": [{"name": "v1", "sha256": sha256}]})
+        for sha256 in (known.sha256, samples_hash(known.voyage))
+    )
+    own, told = tmp_path / "own.toml", tmp_path / "told.json"
+    by_file.save(own)
+    command = ["tube", str(copy), str(namesake), "--ship", str(own), "-o", str(tmp_path / "boat.toml")]
+    assert cli.main([*command, "--json", str(told)]) == 0
+    in_python = twin.tube(by_samples, twin.read_voyages([copy, namesake])).warnings
+    for doubts in (json.loads(told.read_text())["doubts"], in_python):
+        (again,) = (text for text in doubts if "was calibrated to" in text)
+        assert again.startswith("The model was calibrated to copy: ")
 
 
 def test_voyages_without_a_steady_stretch_are_one_line_and_no_file(tmp_path, capsys):

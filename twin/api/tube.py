@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.reference.foretold import errors_of
-from twin.study.reference.sailed import refuse_twice, samples_hash
+from twin.study.reference.sailed import own_references, refuse_twice, samples_hash
 from twin.study.reference.tube_calibration import section
 from twin.study.reference.tube_doubts import doubts
 from twin.study.reference.tube_lines import rows, terminal_lines
@@ -110,7 +110,19 @@ def tube(
     nine voyages; of fewer the best level they can show is promised. DataError when a voyage cannot be used,
     is proved wrong or is given twice. A few seconds for ten minutes of voyage.
     """
-    tell, every = quietly(progress), at_least_one(voyages)
+    every = at_least_one(voyages)
+    return of_read(ship, every, own_references(ship, every), settings, quietly(progress))
+
+
+def of_read(
+    ship: Ship,
+    every: Sequence[Voyage],
+    fitted: Sequence[str],
+    settings: str | os.PathLike[str] | None,
+    tell: Progress,
+) -> TubeCalibration:
+    """The same of voyages that are read already. `fitted`: names of those that the ship was calibrated to.
+    DataError as above."""
     refuse_twice((v.name, samples_hash(v)) for v in every)
     of_voyages(every, ship)
     with tempfile.TemporaryDirectory() as folder:
@@ -131,7 +143,6 @@ def tube(
     made = replace(ship, notes={**ship.notes, SECTION: table})
     calibrated = calibrated_of(made)
     assert calibrated is not None
-    fitted = {str(v.get("name")) for v in ship.notes.get("structural", {}).get("voyages", [])}
     said = {
         "schema_version": 1,
         "ship": ship.name,

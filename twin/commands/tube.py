@@ -3,12 +3,13 @@
 import argparse
 
 from twin import whole
-from twin.api.tube import tube
+from twin.api.tube import of_read
 from twin.api.voyages import read_voyage
 from twin.commands import arguments
 from twin.commands.verb_output import lines_to, progress, typed
 from twin.physics.ship import load
 from twin.recording.ship_file_writer import save
+from twin.study.reference.sailed import own_references
 from twin.study.reference.tube_lines import terminal_lines
 
 EPILOG = """Voyages on which nothing was wrong and which the model was not calibrated to, in the seas and
@@ -35,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     voyages = [read_voyage(path) for path in args.voyages]
-    done = tube(ship, voyages, settings=args.config, progress=progress)
+    done = of_read(ship, voyages, own_references(ship, voyages, args.voyages), args.config, progress)
     save(done.ship, args.output, args.ship)
     result = done.to_dict() | {"output": str(args.output)}
     if args.json:

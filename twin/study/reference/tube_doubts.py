@@ -13,10 +13,14 @@ SEASON_DAYS = 90
 
 
 def doubts(
-    table: Mapping[str, Any], voyages: Sequence[Voyage], asked_s: Sequence[float], L: float, fitted: set[str]
+    table: Mapping[str, Any],
+    voyages: Sequence[Voyage],
+    asked_s: Sequence[float],
+    L: float,
+    fitted: Sequence[str],
 ) -> list[str]:
     """Sentences on the table [tube]. `asked_s`: horizons that the settings ask for; L: the ship's length;
-    `fitted`: names of the voyages that the model was calibrated to."""
+    `fitted`: names of those of the voyages that the model was calibrated to."""
     said = [*_few(table), *_sea(table, L), *_season(voyages)]
     left = [h for h in asked_s if h not in table["horizons_s"]]
     if left:
@@ -24,9 +28,9 @@ def doubts(
             f"No voyage held helm and engine for {as_given(min(left))} s, so there is no tube for "
             f"{', '.join(as_given(h) for h in left)} s: give voyages with longer steady stretches."
         )
-    if again := sorted(fitted & {v.name for v in voyages}):
+    if fitted:
         said.append(
-            f"The model was calibrated to {', '.join(again)}: its errors there may be smaller than on a new "
+            f"The model was calibrated to {', '.join(fitted)}: its errors there may be smaller than on a new "
             "voyage, and the tube too narrow. Give voyages that it has not seen."
         )
     return said
