@@ -9,10 +9,15 @@ import pytest
 import twin
 from twin.errors import DataError
 from twin.physics.ship import load
-from twin.study.calibration.worse import away_on_references, refusal
+from twin.study.calibration.worse import away_on_references, refusal, to_sail
 from twin.study.reference.path_error import PathError
 
 USV = load("usv")
+SPEEDS, ZIGZAGS = (
+    "speed changes from stop to full and back",
+    "zigzags and full turns to both sides at two speeds",
+)
+ALONE = "stretches on which one actuator works alone"
 
 
 def entry(horizon_s, before_m, position_m, before_deg=4.0, heading_deg=3.0):
@@ -34,6 +39,22 @@ def test_an_error_that_grew_names_its_horizon_before_and_after_and_the_manoeuvre
     told = refusal(USV, [entry(10.0, 2.0, 2.1), entry(60.0, 9.0, 30.0, 4.0, 12.0)], ["X_uu", "port.gain"])
     assert "after 60 s" in told and "9.00 m" in told and "30.0 m" in told and "12.0 deg" in told
     assert "speed changes" in told and "one actuator works alone" in told and "zigzags" not in told
+
+
+@pytest.mark.parametrize(
+    ("unexcited", "told"),
+    [
+        (["kappa"], ZIGZAGS),
+        (["K_T1", "gamma_v"], f"{SPEEDS} and {ZIGZAGS}"),
+        (["K_T0", "X_uu"], SPEEDS),
+        (["gamma_r", "N_r", "port.gain"], f"{ZIGZAGS} and {ALONE}"),
+        ([], f"{SPEEDS} and {ZIGZAGS}"),
+    ],
+)
+def test_what_is_to_be_sailed_shows_what_was_left_open(unexcited, told):
+    """What a rudder does shows by its angle, what a screw does by its turns, and what one of several actuators does while
+    it works alone."""
+    assert to_sail(unexcited) == told
 
 
 def test_a_model_that_runs_away_is_refused_though_most_numbers_fell():

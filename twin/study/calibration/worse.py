@@ -18,12 +18,12 @@ GREW = 0.05  # mean logarithm of the errors in place and heading over all horizo
 FASTEST = 3.0  # times service speed: a model that gets farther off than that ran away
 # what a ship does that a model knows nothing of, by where its error stands: under way, or at one place
 KNOWING_NOTHING = {"kept_m": "keeping its speeds", "stood_m": "standing still"}
-# what excites derivatives whose names begin so
+# what excites the numbers of hull and screw whose names begin so, all others of the hull, and the rudder's
 MANOEUVRES = (
-    (("X_",), "speed changes from stop to full and back"),
-    (("Y_", "N_"), "zigzags and full turns to both sides at two speeds"),
-    (("",), "stretches on which one actuator works alone"),
+    (("X_", "K_T"), "speed changes from stop to full and back"),
+    (("",), "zigzags and full turns to both sides at two speeds"),
 )
+ALONE = "stretches on which one actuator works alone"  # what excites a number that names its actuator
 
 
 def refusal(ship: Ship, held_out: Sequence[Mapping[str, Any]], unexcited: Sequence[str]) -> str:
@@ -104,8 +104,7 @@ def to_sail(unexcited: Sequence[str]) -> str:
     """Manoeuvres that show what these voyages left open."""
     out = list[str]()
     for name in unexcited or ("X_", "Y_"):
-        own = name if "." not in name else "."
-        what = next(words for starts, words in MANOEUVRES if own.startswith(starts))
+        what = ALONE if "." in name else next(w for starts, w in MANOEUVRES if name.startswith(starts))
         if what not in out:
             out.append(what)
     return " and ".join((", ".join(out[:-1]), out[-1])) if len(out) > 1 else out[0]
