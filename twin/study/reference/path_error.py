@@ -5,14 +5,14 @@ The error of a window (promise minus reading at its end) is e = (along, across, 
 the place in axes along and across the heading at the start [m], the rest as it is read. On a healthy voyage,
 a time tau ahead,
 
-    e ~ t_nu(0, w^2 S(tau)),    S(tau) = (PRIOR S_noise + n C) / (PRIOR + n)
+    e ~ t_nu(0, w^2 S(tau) (nu - 2)/nu),    S(tau) = (PRIOR S_noise + n C) / (PRIOR + n)
 
-with C the mean of e e' over the reference voyages, each predicted with numbers fitted to the others
-(left_out.py), n its effective number of windows, S_noise what sensors and the structural error alone would
-make of it, w >= 1 a widening where rudder, speed, turning or wind leave what was sailed then, and nu the
-degrees of freedom by which voyages scatter among themselves: log(size of a voyage) has variance
-s^2 = 1/(2 nu). Windows of one voyage are alike, for what the core misses lasts: n of them, correlated by
-rho, count as n / (1 + (n - 1) rho).
+a multivariate t density of this scale, so that w^2 S(tau) is its covariance, with C the mean of e e' over the
+reference voyages, each predicted with numbers fitted to the others (left_out.py), n its effective number of
+windows, S_noise what sensors and the structural error alone would make of it, w >= 1 a widening where rudder,
+speed, turning or wind leave what was sailed then, and nu the degrees of freedom by which voyages scatter
+among themselves: log(size of a voyage) has variance s^2 = 1/(2 nu). Windows of one voyage are alike, for what
+the core misses lasts: n of them, correlated by rho, count as n / (1 + (n - 1) rho).
 
 The log density is a proper scoring rule: no model gains by promising more or less than it knows.
 

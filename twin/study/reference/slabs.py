@@ -20,8 +20,9 @@ class Slabs:
 def slabs_for(
     z: np.ndarray, covariance: np.ndarray, spike: np.ndarray, at: np.ndarray, own: np.ndarray
 ) -> Slabs:
-    """When the spikes of each set become slabs, a low-rank step away: with D what their precisions lose,
-    K = I + C D, mean = z - C D K^-1 z and covariance C - C D K^-1 C.
+    """When the spikes of each set become slabs, a low-rank step away: with D = 1 - 1/spike^2 the change of
+    their prior precisions (below zero where a slab is wider), K = I + C D, the mean is z - C D K^-1 z and the
+    covariance (C^-1 + D)^-1 = C - C D K^-1 C.
 
     z (Q,), covariance C (Q, Q): the posterior before; spike (Q,): widths of "not there", in prior widths;
     at (S, R): the parameters of each set; own (H,): those that are slabs already.
