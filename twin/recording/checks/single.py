@@ -3,17 +3,18 @@ again.
 
 The cost of a voyage is the sum over its relations of log(1 + (off / usual)^2). The mistake that lowers it
 most is named when it puts right what it touches, harms nothing, and no other that would put the same right
-comes near."""
+comes near. A ship that goes astern is no mistake: where that explains as much, none is proved."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from twin.recording.checks.actuator_response import actuators
 from twin.recording.checks.candidate_mistake import Single
 from twin.recording.checks.check_result import Check, doubtful, wrong
 from twin.recording.checks.compass import fitted
 from twin.recording.checks.relations import USUAL_SCATTER, offs
-from twin.recording.checks.single_table import singles
+from twin.recording.checks.single_table import GOES_ASTERN, singles
 from twin.recording.checks.undo import measured, undone
 from twin.recording.checks.voyage_view import VoyageView
 
@@ -82,6 +83,16 @@ def explain(view: VoyageView) -> Explained | None:
             None,
             best.single.uses,
         )
+    if may_go_astern(view, before, best):
+        return Explained(
+            doubtful(
+                best.single.check,
+                f"{text}; so it does if {GOES_ASTERN.text(view)}, and neither rudder nor propulsion says "
+                f"that it does not. If it goes ahead, in the map: {best.single.fix(view)}.",
+            ),
+            None,
+            best.single.uses,
+        )
     if best.single.check == "compass":
         return Explained(
             doubtful("compass", f"{text}. In the map: {best.single.fix(view)}."), best.view, best.single.uses
@@ -97,6 +108,15 @@ def explain(view: VoyageView) -> Explained | None:
         best.view,
         best.single.uses,
     )
+
+
+def may_go_astern(view: VoyageView, before: dict[str, float | None], best: Tried) -> bool:
+    """Whether a ship that goes astern explains all that this mistake does, and the ship's actuators do not
+    push it as its file has them only without the mistake. `before`: the relations with it."""
+    astern = attempt(view, GOES_ASTERN, before)
+    if astern.harmed or not astern.mended >= best.mended:
+        return False
+    return actuators(view).ok or not actuators(best.view).ok
 
 
 def coarse(view: VoyageView) -> VoyageView:

@@ -13,10 +13,12 @@ from twin.recording.checks.undo import (
     NORTH,
     RATE,
     RUDDER,
+    SECOND,
     TURNS,
     Columns,
     Undo,
     as_velocity,
+    by_heading,
     velocity,
 )
 from twin.recording.checks.unit_mistakes import of_rate, of_speed
@@ -134,6 +136,17 @@ def metres_a_degree(latitude_deg: float, longitude_deg: float) -> tuple[float, f
 def west(c: Columns) -> dict[str, np.ndarray]:
     """East counted as west: the column (N,) [m] reversed."""
     return {EAST: -c[EAST]}
+
+
+def end_for_end(view: VoyageView) -> Undo:
+    """The voyage as it would be recorded with bow and stern in each other's place: ahead is astern, and
+    rudder and shaft work the other way."""
+    turned = (RUDDER, TURNS) if by_heading(view.voyage) else (RUDDER, TURNS, FIRST, SECOND)
+    return lambda c: {HEADING: c[HEADING] + 180.0} | {name: -c[name] for name in turned if name in c}
+
+
+# no mistake: the healthy ship beside which every mistake is tried
+GOES_ASTERN = Single(said("the ship goes astern"), end_for_end, said(""), "", (HEADING,), frozenset())
 
 
 def singles(view: VoyageView) -> tuple[Single, ...]:
