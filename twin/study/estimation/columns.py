@@ -271,10 +271,9 @@ def beside(
 
 
 def _step(unknown: Unknown, here: float | None, fine: bool) -> float:
-    """A plausible step that stays in the box: a whole prior width from the number's centre, be that null (a
-    gear that is a little slow is not slow at all, to first order) or where it was centred anew, as a fit
-    does with the core; a tenth of one about a value found off its centre, and where the instruments are so
-    `fine` that what is not linear shows: their own faults."""
+    """A plausible step that stays in the box: a whole prior width from the number's centre (null, or where a
+    fit centred it anew, as the core), a tenth of one about a value found off it, and where the instruments
+    are so `fine` that what is not linear shows: their own faults."""
     size = unknown.sd if here in (None, unknown.centre) and not fine else 0.1 * unknown.sd
     start = unknown.centre if here is None else here
     return size if start + size <= unknown.hi else -size
