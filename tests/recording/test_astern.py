@@ -133,3 +133,22 @@ def test_reversed_thrusters_of_a_boat_that_goes_ahead_are_proved(seed):
     t, c = boat(seed)
     found = proved(told(t, reversed_thrusters(c), ship_of("thrusters")))
     assert list(found) == ["actuators"] and "all actuators are reversed" in found["actuators"]
+
+
+def test_of_a_boat_that_is_set_aside_as_it_goes_astern_nothing_is_proved():
+    """Test: a drift angle of 43 deg, as wind and waves may give a small boat, and velocities by the earth, on
+    the one heading on which a compass that counts anticlockwise from south would show no drift."""
+    t, drift = np.arange(0.0, 100.0), 43.0
+    psi = np.radians(-drift / 2.0 + np.sin(t / 5.0))
+    way = np.full(t.size, 2.0) * np.exp(1j * np.radians(180.0 + drift / 2.0))
+    place, own = np.cumsum(way), way * np.exp(-1j * psi)
+    columns = {
+        "north_m": place.real,
+        "east_m": place.imag,
+        HEADING: np.degrees(psi) % 360.0,
+        "surge_velocity_mps": own.real,
+        "sway_velocity_mps": own.imag,
+    }
+    raw = Raw(Path("b.csv"), np.arange(2, t.size + 2), t, columns, {})
+    found = {c.name: c for c in run_checks(Voyage.of(raw, controls=False).with_meta(velocity_frame="earth"))}
+    assert proved(found) == {} and "if the ship goes astern" in found["velocity_frame"].text

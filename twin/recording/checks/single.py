@@ -54,7 +54,7 @@ def explain(view: VoyageView) -> Explained | None:
     """The one mistake that explains what disagrees; None when nothing does, or nothing explains it."""
     view = coarse(view)
     before = offs(view)
-    if not any(x is not None and x > BROKEN for x in before.values()):
+    if not broken(before):
         return None
     given = frozenset(measured(view.even))
     tried = [
@@ -111,12 +111,19 @@ def explain(view: VoyageView) -> Explained | None:
 
 
 def may_go_astern(view: VoyageView, before: dict[str, float | None], best: Tried) -> bool:
-    """Whether a ship that goes astern explains all that this mistake does, and the ship's actuators do not
-    push it as its file has them only without the mistake. `before`: the relations with it."""
-    astern = attempt(view, GOES_ASTERN, before)
-    if astern.harmed or not astern.mended >= best.mended:
+    """Whether all that this mistake puts right is as on a healthy ship, and nothing else is broken, if the
+    ship goes astern; and its actuators do not push it as its file has them only without the mistake.
+    `before`: the relations with it."""
+    astern = offs(undone(view, GOES_ASTERN.undo(view)))
+    left = broken(astern)
+    if left - broken(before) or any(astern[name] is None or name in left for name in best.mended):
         return False
     return actuators(view).ok or not actuators(best.view).ok
+
+
+def broken(off: dict[str, float | None]) -> set[str]:
+    """The relations that ask for an explanation."""
+    return {name for name, x in off.items() if x is not None and x > BROKEN}
 
 
 def coarse(view: VoyageView) -> VoyageView:
@@ -142,8 +149,9 @@ def attempt(view: VoyageView, single: Single, before: dict[str, float | None]) -
     without = undone(view, single.undo(view))
     after = offs(without)
     kept = {name: before[name] if x is None else x for name, x in after.items()}
-    broken = {name for name, x in before.items() if x is not None and x > BROKEN}
-    mended = frozenset(name for name in broken if after[name] is not None and (after[name] or 0.0) <= MENDED)
+    mended = frozenset(
+        name for name in broken(before) if after[name] is not None and (after[name] or 0.0) <= MENDED
+    )
     harmed = frozenset(
         n for n, x in kept.items() if x is not None and x > max(MENDED, 1.2 * (before[n] or 0.0))
     )
