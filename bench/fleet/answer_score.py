@@ -12,6 +12,7 @@ GAINS = 0.10  # share by which its oracle must bring the ship nearer, for a caus
 SAME = {"Current": {"Current", "VaryingCurrent"}, "VaryingCurrent": {"Current", "VaryingCurrent"}}
 # kinds that were outside the catalogue when the fleet was made -> the effects that they are by now
 BY_NOW = {"SlowCompass": {"HeadingLag"}, "RateScale": {"GyroScale"}}
+FORM_OF = {"memory": "modulus", "heeling": "mmg"}  # families of hulls that add to the form of another
 WEATHER_PROBABILITY = 0.5  # probability from which weather is told as today's
 
 
@@ -57,6 +58,11 @@ def kind(row: Row) -> str:
     none when the fleet was made (by now)."""
     by_now = row["kind"] == "outside" and all(n in BY_NOW for n in row["hidden"])
     return "by now" if by_now else str(row["kind"])
+
+
+def form(row: Row) -> str:
+    """The form of the ship's hull: families of one form are left out of a fit together."""
+    return FORM_OF.get(row["family"], row["family"])
 
 
 def answered_weather(row: Row) -> set[str]:

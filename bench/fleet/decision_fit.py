@@ -18,7 +18,6 @@ from bench.fleet import answer_score, probability_fit
 from bench.fleet.answer_score import Row, Share, share
 from bench.fleet.decided_again import decided_again, read_facts
 from bench.fleet.fleet_page import lines, rows_of
-from bench.fleet.hull_families import form_of
 from bench.fleet.probability_fit import logistic
 from twin.study.diagnosis import criteria, decision, naming
 from twin.study.diagnosis.calibrated_probability import FACTS
@@ -108,9 +107,9 @@ def moved(rows: Sequence[Row]) -> dict[str, float]:
 def healthy_limits(rows: Sequence[Row]) -> dict[str, float]:
     """What HEALTHY of the healthy voyages end within, in expected errors, the day's weather in the model: of
     all (""), and of all but a form of hull, by its name."""
-    errors = [(form_of(r["family"]), r["read"].error_nothing) for r in rows if r["kind"] == "nothing"]
+    errors = [(answer_score.form(r), r["read"].error_nothing) for r in rows if r["kind"] == "nothing"]
     return {
-        left_out: float(np.quantile([e for form, e in errors if form != left_out], HEALTHY))
+        left_out: float(np.quantile([e for of, e in errors if of != left_out], HEALTHY))
         for left_out in ("", *_forms(rows))
     }
 
@@ -186,7 +185,7 @@ def chosen(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     and the probability from which the logistic model names a cause. (Minutes.)"""
     out = {}
     for form in _forms(rows):
-        others = [r for r in rows if form_of(r["family"]) != form]
+        others = [r for r in rows if answer_score.form(r) != form]
         limit = working_point(others, logistic(*examples(others)))
         out[form] = {"thresholds": _changed(moved(others)), "limit": limit}
     return out
@@ -199,7 +198,7 @@ def held_out(rows: Sequence[Row], asked_for: Mapping[str, Mapping[str, Any]]) ->
     held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
     curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
     for form, of in asked_for.items():
-        own, others = ([r for r in rows if (form_of(r["family"]) == form) == its] for its in (True, False))
+        own, others = ([r for r in rows if (answer_score.form(r) == form) == its] for its in (True, False))
         for name, moves in (("before", {}), ("thresholds moved", of["thresholds"])):
             with thresholds(BEFORE | moves):
                 held[name].append(outcome(own, by_table))
@@ -239,7 +238,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _forms(rows: Sequence[Row]) -> list[str]:
-    return sorted({form_of(r["family"]) for r in rows})
+    return sorted({answer_score.form(r) for r in rows})
 
 
 def _changed(best: Mapping[str, float]) -> dict[str, float]:

@@ -1,7 +1,5 @@
-"""The families of hulls: each answers what water does to a hull that moves with (u, v, r) through it [N, N, N
-m]. Floats in, floats out: a voyage is a few thousand calls. `memory` and `heeling` add to the form of another
-family (`FORM_OF`); `modulus` and `strip` can be written in the numbers of the twin's core and its cross-flow
-drag, the rest cannot.
+"""The families of hulls: each answers what water does to a hull that moves with (u, v, r) through it [N, N,
+N m]. Of these the twin's core can be `modulus` and, with its cross-flow drag, `strip`.
 
   mmg       polynomials of v' and r' of third and fourth order (Yasukawa & Yoshimura 2015)
   abkowitz  Taylor series about straight sailing, in dimensional speed (Abkowitz 1964)
@@ -300,9 +298,3 @@ FAMILIES = {  # what hulls, of what kinds of ship, with what resistance
     "planing": (Planing, ("boat",), (hump,)),
     "heeling": (Heeling, ("container", "ferry"), (power_law, waving)),
 }
-FORM_OF = {"memory": "modulus", "heeling": "mmg"}  # of another family, with more
-
-
-def form_of(family: str) -> str:
-    """The family whose form a family has: those of one form are left out of a fit together."""
-    return FORM_OF.get(family, family)

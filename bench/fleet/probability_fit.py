@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from bench.fleet.answer_score import Row, causes, hidden_causes, kind, posterior, share
+from bench.fleet.answer_score import Row, causes, form, hidden_causes, kind, posterior, share
 from bench.fleet.decided_again import decided_again
 from bench.fleet.fleet_page import lines
-from bench.fleet.hull_families import form_of
 from twin.study.diagnosis.calibrated_probability import FACTS, log_odds, posterior_of_unknown, unnamed
 from twin.study.diagnosis.decision import Decision
 from twin.study.diagnosis.facts import Cause, Facts
@@ -107,7 +106,7 @@ def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def examples(rows: Sequence[Row]) -> list[AnswerExample]:
     """Every question of every row."""
     return [
-        AnswerExample(name, form_of(row["family"]), facts, so)
+        AnswerExample(name, form(row), facts, so)
         for row in rows
         for name, question in QUESTIONS.items()
         for facts, so in question.of(row)
@@ -121,9 +120,9 @@ def _arrays(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
 def _held_out(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
     """What the fit to the other forms of hulls says of each example, and whether it is so."""
     told, so = [], []
-    for form in sorted({e.form for e in found}):
-        w = logistic(*_arrays([e for e in found if e.form != form]))
-        x, y = _arrays([e for e in found if e.form == form])
+    for left_out in sorted({e.form for e in found}):
+        w = logistic(*_arrays([e for e in found if e.form != left_out]))
+        x, y = _arrays([e for e in found if e.form == left_out])
         told.append(1 / (1 + np.exp(-(w[0] + x @ w[1:]))))
         so.append(y)
     return np.concatenate(told), np.concatenate(so)
