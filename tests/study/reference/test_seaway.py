@@ -8,10 +8,12 @@ import pytest
 from twin.num import num
 from twin.physics.effects import find
 from twin.physics.model import Model
+from twin.study.estimation.fit import present
+from twin.study.estimation.linear import linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s, waves_in_words, waves_on
 from twin.study.prediction.openloop import coarse
-from twin.study.reference import seaway
+from twin.study.reference import seaway, steering_gear
 from twin.study.reference.seaway import at_sea, excited, levelled, swung
 from twin.study.track.track import track
 from twin.study.track.waves import LASTING, RATE, as_shown, carried, lasting, renewed, swinging
@@ -91,6 +93,20 @@ def test_a_sea_that_was_measured_need_only_be_the_likelier(
 def test_a_slow_gear_is_no_sea(tanker, voyages):
     lagging = track(voyages["SteeringLag"], tanker)
     assert swung(lagging, Model.of(tanker)).swell is None
+
+
+def test_what_is_asked_beside_a_slow_gear_is_asked_from_where_that_gear_stands(tanker, voyages, monkeypatch):
+    asked = []
+
+    def seen(track, model, unknowns, *known, **like):
+        asked.extend((u.owner, u.centre, present(model, u)) for u in unknowns)
+        return linearise(track, model, unknowns, *known, **like)
+
+    monkeypatch.setattr(seaway, "linearise", seen)
+    monkeypatch.setattr(steering_gear, "linearise", seen)
+    swung(in_waves(track(voyages["SteeringLag"], tanker)), Model.of(tanker))
+    assert any(there != 0.0 for owner, _, there in asked if owner == "SteeringLag")
+    assert all(centre == there for _, centre, there in asked)
 
 
 def test_a_model_that_no_filter_can_follow_says_nothing_of_waves(calm, tanker, monkeypatch):

@@ -25,7 +25,7 @@ from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.reference.encounter import met, one_frequency
 from twin.study.reference.nuisance import TEMPER, nuisance_unknowns
-from twin.study.reference.steering_gear import geared
+from twin.study.reference.steering_gear import about, geared
 from twin.study.reference.structure import noise_model_of
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.smooth_motion import running_mean
@@ -64,7 +64,7 @@ def swung(track: Track, model: Model, gear: bool = True) -> Track:
         # a gear that lags leaves swift accelerations, too, and is nothing to first order
         slow = geared(usable, part, unknowns, known, TEMPER) if gear else usable
         if slow is not usable:
-            other, more, less = likeliest_waves(track, slow, unknowns)
+            other, more, less = likeliest_waves(track, slow, about(unknowns, slow))
             rough, sea, calm = rough if sea > more else other, max(sea, more), max(calm, less)
         return rough if sea > calm + enough else track
     except np.linalg.LinAlgError:  # a model that no filter can follow says nothing of waves

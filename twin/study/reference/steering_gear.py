@@ -153,8 +153,9 @@ def _geared(
 
     def lines_of(later: float, slower: float) -> list[Linear]:
         other = with_gear(later, slower)
+        free = about(unknowns, other)
         return [
-            linearise(t, other.without_inputs(t.missing())[0], unknowns, known, like=line, same=same)
+            linearise(t, other.without_inputs(t.missing())[0], free, known, like=line, same=same)
             for t, line in zip(tracks, first, strict=True)
         ]
 
