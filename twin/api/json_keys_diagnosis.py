@@ -73,7 +73,9 @@ DIAGNOSE = (
     *under("resembles[]", CANDIDATE, "known by its form alone: "),
     JsonKey("rivals[].effects[]", "", "one of the likeliest hypotheses", FACTS),
     JsonKey("rivals[].scenario", "", "its noise scenario", FACTS),
-    JsonKey("rivals[].log_bayes_factor", "natural log", "how far it is behind the first", FACTS),
+    JsonKey(
+        "rivals[].log_bayes_factor", "natural log", "log odds against the first, prior odds included", FACTS
+    ),
     JsonKey("rivals[].error_m", "m", "its open-loop error on held-out parts", FACTS),
     JsonKey("answer.not_named.*", "", "why an effect that is likely is not named", FACTS),
     JsonKey("answer.lasting[]", "", "named effects that hold on another day, for `twin add`", FACTS),

@@ -13,7 +13,7 @@ function rankingSection() {
   for (const w of RESULT.weather || []) {
     if ((w.beyond_file || []).length) out.push(el("p.note", null, `The ship file has ${w.beyond_file.map((p) => `${p.name} ${num(p.value, 3)} +- ${num(p.sd, 2)}`).join(", ")}: today's is beyond that, and what is told as ${w.effect} may be something else that acts like it.`));
   }
-  if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log Bayes factor behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
+  if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log odds behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
   if (RESULT.p_value_sentence) out.push(el("p.note", { style: { marginTop: "10px" } }, RESULT.p_value_sentence));
   const missing = (RESULT.answer || {}).lasting || RESULT.missing || [];
   if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));

@@ -75,8 +75,8 @@ function changes(told) {
 }
 
 function rivals(d) {
-  const heads = ["explanation", ["log Bayes factor"], "in words", ["error [m]"]], rows = d.rivals.map((x) => [x.effects.join(" + ") || "nothing", x.log_bayes_factor, odds(x.log_bayes_factor), x.error_m]);
-  return card("Rivals", el("p.note", null, "The likeliest explanations beside each other; a log Bayes factor of −4.6 is a hundred times less likely."), saved("Rivals", heads, rows, table("Hypotheses that were weighed", heads, rows.map((row) => [row[0], num(row[1]), row[2], num(row[3])]))));
+  const heads = ["explanation", ["log odds"], "in words", ["error [m]"]], rows = d.rivals.map((x) => [x.effects.join(" + ") || "nothing", x.log_bayes_factor, odds(x.log_bayes_factor), x.error_m]);
+  return card("Rivals", el("p.note", null, "The likeliest explanations beside each other; log odds of −4.6 are a hundred times less likely."), saved("Rivals", heads, rows, table("Hypotheses that were weighed", heads, rows.map((row) => [row[0], num(row[1]), row[2], num(row[3])]))));
 }
 
 const odds = (x) => (x > -0.01 ? "the likeliest" : x > -1 ? "nearly as likely" : `${x < -13 ? "more than a million" : num(Math.exp(-x), 2)} times less likely`);

@@ -10,7 +10,7 @@ NAMED = 0.9  # probability from which a cause is named (fitted)
 SURE = 0.8  # from which weather is named, a likely cause is asked about, or nothing said to be missing
 CERTAIN = 0.9  # of a second cause, one of a group, or that a force comes and goes: rough forms mend others
 LOST = 0.5  # likelier than not: of something without a name, from which none is given; of what is named
-# log Bayes factor [natural log]
+# log odds, or log Bayes factor where none were beforehand [natural log]
 CLEAR = 3.0  # 20 to 1 (Kass & Raftery 1995): by which a change is asked for, or two effects told apart
 # ratios of open-loop errors [1]
 NEARLY = 1.75  # times the expected error that 98 % of healthy voyages end within (when it was set)

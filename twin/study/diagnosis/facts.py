@@ -25,8 +25,8 @@ class Cause:
     sea_force: bool
     probability: float  # how probable is it among all that was weighed? [1]
     with_rivals: float  # how probable is it, or one that these voyages cannot tell from it? [1]
-    log_bayes_factor: float  # how much likelier is the best hypothesis with it than the best without it?
-    alone: float  # how much likelier are the readings with it alone than with nothing? [log Bayes factor]
+    log_bayes_factor: float  # how much likelier is the best hypothesis with it than without? [log odds]
+    alone: float  # how much likelier is it alone than nothing? [log odds]
     error_gain: float | None  # share by which the open-loop error is less with it; None: not asked [1]
     significance: float  # how far are its numbers together from none? [standard deviations of one]
     change: float  # how far is its clearest number from the ship's file, over what its form may miss? [1]
