@@ -1,8 +1,9 @@
 """What a fit says, number by number and fault by fault: sizes, what is seen, what cannot be told, and which
 residuals show it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -22,6 +23,7 @@ CLOCKS = {
     "rate_delay": ("rate",),
     "log_delay": ("log",),
 }
+NOTHING_REFITTED: Mapping[str, float] = MappingProxyType({})
 OF_ATTITUDE = ("heading_delay", "rate_delay")  # ages of what says where the ship points and how it turns
 
 
@@ -86,19 +88,24 @@ def said(
     found: KinematicFit,
     prompt: Sequence[str],
     velocity_by: str,
+    refitted: Mapping[str, float] = NOTHING_REFITTED,
 ) -> Instruments:
     """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
     for each voyage, in the order of the fit; `prompt`: the ages that are none by definition, first that from
-    which those of heading and rate count. A fault of the likeliest set is seen when its log Bayes factor,
+    which those of heading and rate count; `refitted`: log Bayes factors of faults by fits of their own with
+    them and without, which are believed where they are the lesser (refits.py). A fault of the likeliest set is seen when its log Bayes factor,
     or that of it and what would stand in its place together, is above FAULT_BAYES_FACTOR; in the latter case
     alone these voyages do not tell it from that."""
-    book = WeighedSets(found, prompt)
+    refuted = [f for f, factor in refitted.items() if factor <= FAULT_BAYES_FACTOR]
+    book = WeighedSets(found, prompt, refuted)
     best = book.likeliest()
-    factor = {f: book.bayes_factor(f, best) for f in book.tellable}
+    factor = {f: min(book.bayes_factor(f, best), refitted.get(f, np.inf)) for f in book.tellable}
     everything = book.weigh(book.tellable)
     untold = [f for f in best.faults if factor[f] <= FAULT_BAYES_FACTOR]
     instead = {f: book.instead(f, best) if f in untold else () for f in best.faults}
-    of_any = {f: book.bayes_factor(f, best, instead[f]) for f in best.faults}
+    of_any = {
+        f: min(book.bayes_factor(f, best, instead[f]), refitted.get(f, np.inf)) for f in best.faults
+    }
     faults = tuple(f for f in best.faults if of_any[f] > FAULT_BAYES_FACTOR)
     estimates = tuple(
         e for i in range(found.at.size) if (e := _one(i, readings, book, best, faults, factor, everything))

@@ -8,10 +8,18 @@ import numpy as np
 
 from twin.recording.progress import Progress, silent
 from twin.recording.voyage import Voyage
-from twin.study.instruments.findings import CLOCKS, OF_ATTITUDE, InstrumentEstimate, Instruments, said
+from twin.study.instruments.findings import (
+    CLOCKS,
+    FAULT_BAYES_FACTOR,
+    OF_ATTITUDE,
+    InstrumentEstimate,
+    Instruments,
+    said,
+)
 from twin.study.instruments.instrument_samples import Readings, of_track, of_voyage
 from twin.study.instruments.kinematic_fit import KinematicFit, columns, fit
 from twin.study.instruments.problem import Problem
+from twin.study.instruments.refits import Refits, begun_anew
 from twin.study.instruments.select import Weighed, WeighedSets
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, effect_of
 from twin.study.instruments.velocity_turned import turned_share
@@ -47,10 +55,36 @@ def estimate(
     problems, velocity_by = _problems(readings, lengths, own, progress)
     progress("fitting all numbers at once")
     found, prompt = _whole(problems, clock, varying)
+    refits, refitted = Refits(problems, found.theta), dict[str, float]()
+    while True:
+        refuted = [f for f, factor in refitted.items() if factor <= FAULT_BAYES_FACTOR]
+        found, best = _settled(problems, found, prompt, refuted, varying, progress)
+        answer = said(readings, problems, found, prompt, velocity_by, refitted)
+        asked = [f for f in answer.faults if f not in refitted]
+        if not asked:
+            return answer
+        progress("fitting without " + ", ".join(asked))
+        factors = refits.bayes_factors(best.faults, answer.faults)
+        weakest = min(factors, key=lambda f: factors[f])
+        if factors[weakest] > FAULT_BAYES_FACTOR:
+            refitted |= factors
+        else:
+            refitted[weakest], problems = factors[weakest], begun_anew(problems)
+
+
+def _settled(
+    problems: Sequence[Problem],
+    found: KinematicFit,
+    prompt: Sequence[str],
+    refuted: Sequence[str],
+    varying: bool,
+    progress: Progress,
+) -> tuple[KinematicFit, Weighed]:
+    """The fit of the likeliest set of faults, none of which was refuted, and the set: chosen about one fit,
+    fitted, and chosen again until it stays."""
     chosen: tuple[str, ...] | None = None
     for _ in range(ROUNDS):
-        book = WeighedSets(found, prompt)
-        best = book.likeliest()
+        best = WeighedSets(found, prompt, refuted).likeliest()
         if best.faults == chosen:
             break
         chosen = best.faults
@@ -61,7 +95,7 @@ def estimate(
             _start(found, best),
             varying=varying,
         )
-    return said(readings, problems, found, prompt, velocity_by)
+    return found, best
 
 
 def _readings(v: Voyage | Track | Readings) -> Readings:

@@ -33,9 +33,10 @@ class Weighed:
 
 class WeighedSets:
     """The sets weighed so far about one fit. `prompt`: the ages that are none by definition, since a clock
-    of all instruments shows nowhere."""
+    of all instruments shows nowhere; `refuted`: faults that fits of their own did not bear out (refits.py),
+    which are in no set but where they are asked for by name."""
 
-    def __init__(self, found: KinematicFit, prompt: Collection[str]) -> None:
+    def __init__(self, found: KinematicFit, prompt: Collection[str], refuted: Collection[str] = ()) -> None:
         self.fit = found
         voyages = found.theta.shape[0]
         order = [UNKNOWNS[i] for i in SHARED] + [UNKNOWNS[i] for i in MINE] * voyages
@@ -46,6 +47,7 @@ class WeighedSets:
         self.tellable = tuple(
             f for f in FAULTS if f not in (*ALWAYS, *prompt) and told[self.fault == f].any()
         )
+        self.offered = tuple(f for f in self.tellable if f not in refuted)
         self.always = np.isin(self.fault, ALWAYS)
         self.places = {f: self.fault == f for f in FAULTS}
         self.weighed: dict[Sets, Weighed] = {}
@@ -94,7 +96,7 @@ class WeighedSets:
             now = best
 
     def _near(self, now: Sets, held: Collection[str], never: Collection[str]) -> list[Sequence[str]]:
-        more = [f for f in self.tellable if f not in now and f not in never]
+        more = [f for f in self.offered if f not in now and f not in never]
         less = [f for f in now if f not in held]
         out: list[Sequence[str]] = [(*now, f) for f in more]
         out += [tuple(x for x in now if x != f) for f in less]
@@ -102,7 +104,7 @@ class WeighedSets:
 
     def likeliest(self) -> Weighed:
         """From nothing upward, and from everything downward: the better of both."""
-        return max(self.best(), self.best(self.tellable), key=lambda w: w.log_weight)
+        return max(self.best(), self.best(self.offered), key=lambda w: w.log_weight)
 
     def instead(self, fault: str, best: Weighed) -> Sets:
         """What would stand in the place of this fault of the likeliest set, were it not there."""
