@@ -103,9 +103,7 @@ def said(
     everything = book.weigh(book.tellable)
     untold = [f for f in best.faults if factor[f] <= FAULT_BAYES_FACTOR]
     instead = {f: book.instead(f, best) if f in untold else () for f in best.faults}
-    of_any = {
-        f: min(book.bayes_factor(f, best, instead[f]), refitted.get(f, np.inf)) for f in best.faults
-    }
+    of_any = {f: min(book.bayes_factor(f, best, instead[f]), refitted.get(f, np.inf)) for f in best.faults}
     faults = tuple(f for f in best.faults if of_any[f] > FAULT_BAYES_FACTOR)
     estimates = tuple(
         e for i in range(found.at.size) if (e := _one(i, readings, book, best, faults, factor, everything))
