@@ -63,8 +63,9 @@ def diagnose(
     references: Sequence[Voyage] = (),
     progress: Progress = silent,
 ) -> Diagnosed:
-    """Judge all candidates jointly on these voyages. DataError: there is none, one is given twice or too
-    short, or a sign, unit or frame of one is proved wrong; SettingsError: the ship file is damaged."""
+    """Judge all candidates jointly on these voyages. DataError: there is none, one is too short, or given
+    twice or as a reference too, or a sign, unit or frame of one is proved wrong; SettingsError: the ship file
+    is damaged."""
     checks = of_voyages([*voyages, *references], ship)
     case = assemble(voyages, ship, references, progress)
     told = with_further(
