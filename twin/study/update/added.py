@@ -70,7 +70,7 @@ def _metres(result: dict[str, Any], shown: Fall) -> str:
         f"{num(healthy['heading_mae_deg'], 2)} deg"
     )
     return (
-        f"{as_given(shown.horizon_s)} s open-loop error from {num(b['position_mae_m'], 3)} to "
+        f"{as_given(shown.horizon_s, 4)} s open-loop error from {num(b['position_mae_m'], 3)} to "
         f"{num(a['position_mae_m'], 3)} m and {turned} ({usual})"
     )
 
@@ -210,7 +210,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     for r in result["horizons"]:
         b, a, n = r["before"], r["after"], r["noise_floor"]
         out.append(
-            f"{as_given(r['horizon_s']):>6} s"
+            f"{as_given(r['horizon_s'], 4):>6} s"
             f"{num(b['position_mae_m'], 3):>13}{num(a['position_mae_m'], 3):>12}"
             f"{num(n['position_mae_m'], 2):>14}{num(b['heading_mae_deg'], 2):>15}"
             f"{num(a['heading_mae_deg'], 2):>13}{num(n['heading_mae_deg'], 2):>16}"
