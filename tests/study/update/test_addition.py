@@ -11,7 +11,6 @@ import pytest
 from bench.small_boats import ship_of
 from tests.thorough import thorough
 from twin.cli import main
-from twin.errors import DataError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load, to_table
@@ -195,24 +194,6 @@ def test_five_minutes_are_too_short_to_prove_anything(verb, on_disk, make, tmp_p
     words = ("--ship", "kvlcc2", "--voyage", on_disk(make(seconds=300.0)), "-o", tmp_path / "s.toml")
     assert verb("add", "Current", *words) == 4
     assert "--held-out" in capsys.readouterr().err and not (tmp_path / "s.toml").exists()
-
-
-def test_positions_that_come_too_slowly_for_a_horizon_are_judged_where_they_were_read(sailed, stream, kvlcc2):
-    """Test: a stream, with position and velocity every 25 s. Expected: it is proved 50 s and 100 s ahead, for
-    60 s and 120 s; where a position comes every 250 s, one line that says so."""
-
-    def seldom(voyage, wait_s):
-        read = np.unique(np.searchsorted(voyage.time_s, np.arange(0.0, voyage.time_s[-1], wait_s)))
-        columns = {n: x.copy() for n, x in voyage.columns.items()}
-        for name in ("north_m", "east_m", "surge_velocity_mps", "sway_velocity_mps"):
-            columns[name][np.delete(np.arange(voyage.time_s.size), read)] = np.nan
-        return sailed(voyage.with_rows(voyage.time_s, columns))
-
-    told = add(kvlcc2, [find("Current")], [seldom(stream(0), 25.0)], [seldom(stream(1), 25.0)])
-    assert told.proof.proved and told.fall.after < 0.1 * told.fall.before
-    assert [r["horizon_s"] for r in told.result["horizons"]] == pytest.approx([50.0, 100.0], abs=0.5)
-    with pytest.raises(DataError, match="how far off a prediction ends cannot be judged"):
-        add(kvlcc2, [find("Current")], [seldom(stream(0), 250.0)], [seldom(stream(1), 250.0)])
 
 
 def test_what_was_not_proved_says_how_much_more_would_do():

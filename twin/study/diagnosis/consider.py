@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.physics.ship_notes import read_from
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
-from twin.study.diagnosis.case import SCENARIOS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case, uneven
 from twin.study.diagnosis.criteria import CLEAR, SURE, USUAL
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
@@ -20,10 +20,12 @@ from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
 from twin.study.diagnosis.overtime import varying
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
+from twin.study.estimation.linear import Linear
 from twin.study.estimation.rarity import P95, deviations
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
 from twin.study.reference.healthy import Healthy, always_weighed, compared, score
+from twin.study.reference.reading import MOST_SEGMENTS, read_lines
 from twin.study.reference.seaway import at_sea
 from twin.study.reference.structure import noise_model_of
 
@@ -141,8 +143,21 @@ def against_healthy(case: Case) -> Healthy | None:
         return None
     its = {type(e) for e in case.model.effects}
     causes = [n for n in case.names(case.candidates) if always_weighed(case.catalogue[n], its)]
-    own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in case.lines]
+    own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in lines_apart(case)]
     return compared(own, scores)
+
+
+def lines_apart(case: Case) -> Sequence[Linear]:
+    """Each voyage linearised on as many segments as every reference voyage was scored on: a score grows with
+    them, and voyages that are asked together share that many."""
+    if len(case.tracks) == 1:
+        return case.lines
+    alone = [
+        read_lines([t], case.linearised, case.unknowns, case.catalogue, MOST_SEGMENTS)[0] for t in case.tracks
+    ]
+    time = float(case.model.ship.scale("time"))
+    settled = any(line.track.ripple is not None for line in case.lines)
+    return [uneven(line, time) for line in alone] if settled else alone
 
 
 def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> Sets:
