@@ -22,7 +22,7 @@ from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.consider import Considered, joint_significance
 from twin.study.diagnosis.further import with_further
-from twin.study.diagnosis.horizon import horizon_s
+from twin.study.diagnosis.horizon import mean_horizon_s
 from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
 from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.overtime import PARTS, over_time
@@ -86,7 +86,7 @@ def diagnose(
         },
         "moments": [m.as_json(case.model) for m in considered.pushes],
         "path": {
-            "horizon_s": horizon_s(case.tracks[0], case.model),
+            "horizon_s": mean_horizon_s(case.tracks, case.model),
             "error_without": base.open_loop_error_m,
             "error_floor": base.expected_error_m,
         },
@@ -193,7 +193,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         else None,
         "typical_force": typical_force(case, best, name),
         "stream": set_and_rate(case, best, name),
-        "error_horizon_s": horizon_s(case.tracks[0], case.model),
+        "error_horizon_s": mean_horizon_s(case.tracks, case.model),
         "error_without": _without(case, found, considered, name),
         "error_with": held_out_error(case, best)
         if np.isnan(best.open_loop_error_m)

@@ -29,6 +29,16 @@ def horizon_s(track: Track, model: Model) -> float:
     return track.h * max(leads, key=lambda lead: valid_windows(track, lead))
 
 
+def mean_horizon_s(tracks: Sequence[Track], model: Model) -> float:
+    """How far ahead the mean error of these tracks looks [s]: the mean over the parts that are judged of all
+    of them, each as far as its own track has it."""
+    ahead = [horizon_s(t, model) for t in tracks]
+    if len(set(ahead)) == 1:
+        return ahead[0]
+    count = [valid_windows(t, round(h / t.h)) for t, h in zip(tracks, ahead, strict=True)]
+    return float(np.average(ahead, weights=count))
+
+
 def where_read(tracks: Sequence[Track], horizons_s: Sequence[float]) -> list[float]:
     """The same of any times ahead [s] at which several tracks are judged together: where positions of all of
     them are read more slowly than they are bridged, each as far as the most parts end at one, less those by
