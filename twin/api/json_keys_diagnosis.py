@@ -40,7 +40,9 @@ CANDIDATE = (
     ),
     *when("one is likely", TYPICAL_FORCE),
     *under("stream[]", STREAM),
-    JsonKey("error_horizon_s", "s", "how far ahead held-out parts are predicted, in the mean", "one is likely"),
+    JsonKey(
+        "error_horizon_s", "s", "how far ahead held-out parts are predicted, in the mean", "one is likely"
+    ),
     JsonKey("error_without", "m", "open-loop error there with the day's weather alone", "one is likely"),
     JsonKey("error_with", "m", "the same with it, on parts not used to fit it", "one is likely"),
     JsonKey("error_floor", "m", "what is expected if it is the true cause", "one is likely"),
