@@ -98,6 +98,7 @@ DIAGNOSE = (
     JsonKey("path.horizon_s", "s", "how far ahead held-out parts are predicted, in the mean"),
     JsonKey("path.error_without", "m", "open-loop error there without any cause"),
     JsonKey("path.error_floor", "m", "what is expected of this ship when nothing is wrong"),
+    JsonKey("path.weather[]", "", "today's water and weather with which these errors are", "there is some"),
     JsonKey("p_value", "-", "how often a healthy voyage scores as high, by this ship's references, or null"),
     JsonKey("p_value_at_best", "-", "the least that so few references can show, or null"),
     JsonKey("p_value_references", "", "n, the reference voyages whose score the ship file has"),

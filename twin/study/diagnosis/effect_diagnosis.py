@@ -36,6 +36,7 @@ from twin.study.diagnosis.verdict import (
     restless_water,
     rivals,
     typical_force,
+    with_steady_stream,
 )
 from twin.study.estimation.start import waves_on
 from twin.study.reference.nuisance import learned_since
@@ -89,6 +90,7 @@ def diagnose(
             "horizon_s": mean_horizon_s(case.tracks, case.model),
             "error_without": base.open_loop_error_m,
             "error_floor": base.expected_error_m,
+            "weather": list(with_steady_stream(case, considered.base) if base.steady else considered.base),
         },
         "next_manoeuvre": _next(told, listed, progress),
         **_circumstances(told, [c["effect"] for c in listed]),
