@@ -53,7 +53,8 @@ def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
 
 
 def of_nothing(posterior: float, f: Facts, d: Decision) -> float:
-    """How often no cause was there where that has this posterior probability. [1]"""
+    """How often no cause was there where that has this posterior probability. [1] A diagnosis sets it aside
+    where a stretch had a push of its own; the fit did not."""
     return _share(OF_NOTHING, log_odds=log_odds(posterior), unnamed=unnamed(f, d))
 
 
