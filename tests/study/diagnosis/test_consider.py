@@ -5,10 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from twin.study.diagnosis import assemble, consider
-from twin.study.diagnosis.consider import lines_apart, without_hollow
+from twin.study.diagnosis.consider import without_hollow
 from twin.study.diagnosis.facts import Cause
-from twin.study.track.segments import segments
 
 EXPLANATION = ("HullFouling", "RudderOffset", "SpeedLogBias")
 KEPT = EXPLANATION[:2]
@@ -44,21 +42,3 @@ def test_a_cause_that_ends_at_nothing_without_an_instrument_that_is_as_it_was_ex
     told = without_hollow(case, found, EXPLANATION, causes)
     assert [c.effect for c in told if c.in_explanation] == explains
     assert without_hollow(case, {}, EXPLANATION, causes) == causes  # nobody fitted what is left
-
-
-def test_each_of_several_voyages_is_scored_on_as_many_segments_as_a_reference_was(make, kvlcc2, monkeypatch):
-    """Test: two voyages of two segments each, of which two are read of all together. Expected: each is scored
-    on both of its own; a single voyage on what was read of it."""
-    monkeypatch.setattr(assemble, "MOST_SEGMENTS", 2)
-    monkeypatch.setattr(consider, "MOST_SEGMENTS", 2)
-    sailed = [make(seed=i, seconds=1500.0) for i in (0, 1)]
-    case, alone = assemble.assemble(sailed, kvlcc2), assemble.assemble(sailed[:1], kvlcc2)
-    time = float(kvlcc2.scale("time"))
-
-    def read(lines):
-        return [len(segments([line.track], time)) for line in lines]
-
-    assert read(case.lines) == [1, 1] and read(lines_apart(case)) == [2, 2]
-    assert lines_apart(alone) is alone.lines and read(alone.lines) == [2]
-    columns = [line.A.shape[-1] for line in lines_apart(case)]
-    assert columns == [len(case.unknowns)] * 2

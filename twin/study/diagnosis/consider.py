@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from twin.physics.ship_notes import read_from
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
-from twin.study.diagnosis.case import SCENARIOS, Case, uneven
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.criteria import CLEAR, SURE, USUAL
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
+from twin.study.diagnosis.healthy_score import against_healthy
 from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.irregular import comes_and_goes
 from twin.study.diagnosis.moments import Moment, moments
@@ -20,14 +20,11 @@ from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
 from twin.study.diagnosis.overtime import varying
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
-from twin.study.estimation.linear import Linear
 from twin.study.estimation.rarity import P95, deviations
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
-from twin.study.reference.healthy import Healthy, always_weighed, compared, score
-from twin.study.reference.reading import MOST_SEGMENTS, read_lines
+from twin.study.reference.healthy import Healthy
 from twin.study.reference.seaway import at_sea
-from twin.study.reference.structure import noise_model_of
 
 NO_GAP = 1e3  # log Bayes factor written where there is nothing to compare with
 
@@ -131,33 +128,6 @@ def of_any_day(case: Case, found: Found) -> tuple[str, ...]:
             day = usual.get(u.label, 0.0)
             size[u.owner] = max(size.get(u.owner, 0.0), abs(u.sd * z) / day if day else np.inf)
     return tuple(name for name, times in size.items() if times <= ANY_DAY)
-
-
-def against_healthy(case: Case) -> Healthy | None:
-    """How rare these voyages would be on this ship in health, by its reference voyages
-    (reference/healthy.py)."""
-    with read_from(case.model.ship, "[structural] left_out_scores"):
-        scores = list(map(float, case.model.ship.notes.get("structural", {}).get("left_out_scores", [])))
-    noise_model = noise_model_of(case.model.ship, "beside")
-    if not scores or noise_model is None:
-        return None
-    its = {type(e) for e in case.model.effects}
-    causes = [n for n in case.names(case.candidates) if always_weighed(case.catalogue[n], its)]
-    own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in lines_apart(case)]
-    return compared(own, scores)
-
-
-def lines_apart(case: Case) -> Sequence[Linear]:
-    """Each voyage linearised on as many segments as every reference voyage was scored on: a score grows with
-    them, and voyages that are asked together share that many."""
-    if len(case.tracks) == 1:
-        return case.lines
-    alone = [
-        read_lines([t], case.linearised, case.unknowns, case.catalogue, MOST_SEGMENTS)[0] for t in case.tracks
-    ]
-    time = float(case.model.ship.scale("time"))
-    settled = any(line.track.ripple is not None for line in case.lines)
-    return [uneven(line, time) for line in alone] if settled else alone
 
 
 def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> Sets:
