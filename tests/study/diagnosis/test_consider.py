@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from twin.study.diagnosis.consider import without_hollow
+from twin.physics.effects import catalogue
+from twin.study.diagnosis.consider import stilled, without_hollow
 from twin.study.diagnosis.facts import Cause
 
 EXPLANATION = ("HullFouling", "RudderOffset", "SpeedLogBias")
@@ -42,3 +43,20 @@ def test_a_cause_that_ends_at_nothing_without_an_instrument_that_is_as_it_was_ex
     told = without_hollow(case, found, EXPLANATION, causes)
     assert [c.effect for c in told if c.in_explanation] == explains
     assert without_hollow(case, {}, EXPLANATION, causes) == causes  # nobody fitted what is left
+
+
+@pytest.mark.parametrize(
+    "steady, others, told",
+    [
+        (True, [("Current", "RudderWear")], ("Current", "RudderWear")),
+        (False, [("Current", "RudderWear")], ("VaryingCurrent", "RudderWear")),
+        (True, [], ("VaryingCurrent", "RudderWear")),  # nobody fitted the steady one
+    ],
+)
+def test_a_stream_that_did_not_change_is_held_against_the_references_as_the_steady_one(steady, others, told):
+    """Test: the likeliest set has a stream that may change. Expected: where it did not, the set with the steady
+    stream says how much of it the references had, and how much nearer the path is with it."""
+    held = ("VaryingCurrent", "RudderWear")
+    found = {held: SimpleNamespace(steady=steady)} | {s: SimpleNamespace(steady=False) for s in others}
+    case = SimpleNamespace(catalogue=catalogue(), ordered=lambda names: tuple(sorted(names)))
+    assert set(stilled(case, found, held)) == set(told)

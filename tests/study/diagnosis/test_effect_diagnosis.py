@@ -4,6 +4,7 @@ nothing."""
 import json
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +13,13 @@ from tests.thorough import one_of, thorough
 from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue, find
+from twin.physics.model import Model
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
+from twin.study.diagnosis import effect_diagnosis
 from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.diagnosis.tell_diagnosis import terminal_lines
+from twin.study.reference.evidence import Hypothesis
 
 
 @pytest.fixture(scope="module")
@@ -211,3 +215,22 @@ def test_a_voyage_that_the_ship_was_calibrated_on_is_said_to_be_one(monday):
     lines = terminal_lines(monday | {"calibrated_on": ["monday"]})
     assert lines[0].startswith("monday: the ship was calibrated on this voyage")
     assert lines[1:] == terminal_lines(monday)
+
+
+@pytest.mark.parametrize("name, numbers", [("Wind", ["Wind.c_x"]), ("VaryingCurrent", ["scatter"])])
+def test_only_the_restless_water_itself_is_told_by_its_scatter(tanker, monkeypatch, name, numbers):
+    """Test: the likeliest hypothesis is restless water and nothing else; the next holds this weather. Expected:
+    a wind keeps the numbers of the set that holds it."""
+    monkeypatch.setattr(effect_diagnosis, "parameters", lambda case, found, name: [{"name": f"{name}.c_x"}])
+    for of_name in ("beyond_file", "typical_force", "set_and_rate"):
+        monkeypatch.setattr(effect_diagnosis, of_name, lambda *_: None)
+    case = SimpleNamespace(
+        catalogue=catalogue(),
+        weather=("Wind", "VaryingCurrent"),
+        model=Model.of(tanker),
+        noise_model=SimpleNamespace(flow=0.01),
+    )
+    said = [Hypothesis((), "streaming", 0.0, 0.0), Hypothesis((name,), "usual", -0.1, 0.0)]
+    found = {h.effects: SimpleNamespace(posterior=None) for h in said}
+    told = SimpleNamespace(case=case, weighed=said, found=found, causes=(), shown=())
+    assert [p["name"] for p in effect_diagnosis._weather(told, name, 0.55)["parameters"]] == numbers

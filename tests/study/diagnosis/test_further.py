@@ -127,6 +127,17 @@ def test_what_comes_and_goes_in_the_first_answer_still_does_beside_a_further_cau
 
 
 @thorough
+def test_weather_that_only_the_second_look_is_sure_of_is_as_probable_as_it_says(half):
+    likely = replace(half.weights, weather={**half.weights.weather, "Current": 0.93})
+    named = replace(half.decision, missing=("HullFouling", "Current"))
+    again = replace(half, weights=likely, decision=named)
+    assert half.weights.weather["Current"] < 0.5
+    both = further._joined(half, again, ("HullFouling",))
+    assert both.decision.missing == ("HeadingBias", "HullFouling", "Current")
+    assert both.weights.weather["Current"] == 0.93
+
+
+@thorough
 def test_the_set_is_fitted_also_where_the_first_answer_stood_beside_other_water(half):
     """Beside a stream that the whole does without, no part of it was found: its guess is of first order."""
     stream = {("HeadingBias", "Current"): half.found[half.shown]}

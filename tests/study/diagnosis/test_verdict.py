@@ -151,9 +151,21 @@ def test_a_stream_within_twice_what_the_references_scatter_by_is_of_any_day(east
     )
     daily = {"Current.north": 0.2, "Current.east": 0.2}
     known, unknown = (
-        SimpleNamespace(effects=effects, nuisance=SimpleNamespace(daily=d)) for d in (daily, {})
+        SimpleNamespace(effects=effects, nuisance=SimpleNamespace(daily=d), weather=("Current",))
+        for d in (daily, {})
     )
     assert of_any_day(known, found) == ("Current",) * ordinary and of_any_day(unknown, found) == ()
+
+
+def test_a_steady_push_is_a_cause_and_no_weather_of_any_day():
+    """Else one answer could name it and say that it is not missing."""
+    push = Unknown("ExternalForce", "north", "N", 0.0, 1.0, -9.0, 9.0, every_day=True)
+    found = SimpleNamespace(
+        hypothesis=Hypothesis(("ExternalForce",), "usual", 0.0, 0.0),
+        posterior=SimpleNamespace(z=np.array([0.1])),
+    )
+    daily = SimpleNamespace(daily={"ExternalForce.north": 1.0})
+    assert of_any_day(SimpleNamespace(effects=[push], nuisance=daily, weather=("Current",)), found) == ()
 
 
 def test_beside_weather_that_is_named_the_causes_are_told_that_cannot_be_told_apart():

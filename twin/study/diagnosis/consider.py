@@ -19,7 +19,15 @@ from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import ANY_DAY, roughly
 from twin.study.diagnosis.overtime import varying
 from twin.study.diagnosis.refine import Found, Sets
-from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
+from twin.study.diagnosis.verdict import (
+    Weights,
+    alike,
+    group,
+    of_the_sea,
+    one_of,
+    power,
+    with_steady_stream,
+)
 from twin.study.estimation.rarity import P95, deviations
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
@@ -73,9 +81,8 @@ def consider(
         for name in named
     ]
     causes = without_hollow(case, found, explanation, causes)
-    weather = [
-        _cause(case, weighed, found, explanation, name, w, ()) for name, p in w.weather.items() if p >= SURE
-    ]
+    still = stilled(case, found, explanation)
+    weather = [_cause(case, weighed, found, still, name, w, ()) for name, p in w.weather.items() if p >= SURE]
     healthy = against_healthy(case)
     strongest = max(pushes, key=lambda m: m.log_evidence, default=None)
     facts = Facts(
@@ -99,7 +106,10 @@ def consider(
         one_of=tuple(group(weighed, w)),
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
         weather=tuple(sorted(weather, key=lambda c: -c.probability)),
-        as_before=(*case.as_before, *of_any_day(case, found[explanation or w.best.effects])),
+        as_before=(
+            *case.as_before,
+            *of_any_day(case, found[still or stilled(case, found, w.best.effects)]),
+        ),
         reached=healthy.reached if healthy else None,
         comes_and_goes=comes_and_goes(case, found[explanation or w.best.effects]),
     )
@@ -119,12 +129,19 @@ def without_hollow(
     return [replace(c, in_explanation=c.in_explanation and c.effect not in hollow) for c in causes]
 
 
+def stilled(case: Case, found: Mapping[Sets, Found], effects: Sets) -> Sets:
+    """The set with the steady stream in the place of one that may change and did not, where that was found
+    too: so its water is told, and held against that of the reference voyages."""
+    still = with_steady_stream(case, effects)
+    return still if still in found and found[effects].steady else effects
+
+
 def of_any_day(case: Case, found: Found) -> tuple[str, ...]:
-    """What a hypothesis has of water and steady force, and the reference voyages had as much of: no number of
-    it is more than ANY_DAY times what they scatter by."""
+    """The weather that a hypothesis has and the reference voyages had as much of: no number of it is more
+    than ANY_DAY times what they scatter by."""
     usual, size = case.nuisance.daily, dict[str, float]()
     for u, z in zip(case.effects, found.posterior.z, strict=True):
-        if u.every_day and u.owner in found.hypothesis.effects:
+        if u.every_day and u.owner in case.weather and u.owner in found.hypothesis.effects:
             day = usual.get(u.label, 0.0)
             size[u.owner] = max(size.get(u.owner, 0.0), abs(u.sd * z) / day if day else np.inf)
     return tuple(name for name, times in size.items() if times <= ANY_DAY)

@@ -233,7 +233,7 @@ def _weather(told: SearchAnswer, name: str, probability: float) -> dict[str, Any
     sets = [told.shown, *sets] if told.causes and name in told.shown else sets
     best = (
         found[sets[0]]
-        if sets and (name in weighed[0].effects or not restless_water(case, weighed[0]))
+        if sets and (name in weighed[0].effects or name not in restless_water(case, weighed[0]))
         else None
     )
     out = {"effect": name, "belongs_to": case.catalogue[name].belongs_to, "probability": capped(probability)}

@@ -87,12 +87,18 @@ def _joined(first: SearchAnswer, again: SearchAnswer, new: Sequence[str]) -> Sea
     weighed = path.with_path(own.hypothesis)
     others = [h for h in first.weighed if (h.effects, h.scenario) != (chosen, weighed.scenario)]
     of_new = {n: again.weights.effects[n] for n in new}
+    of_day = {n: again.weights.weather[n] for n in again.case.day(again.decision.missing)}
     return replace(
         first,
         weighed=sorted([weighed, *others], key=lambda h: -h.log_weight),
         found={**first.found, chosen: own},
         path=path,
-        weights=replace(first.weights, effects={**first.weights.effects, **of_new}, best=own.hypothesis),
+        weights=replace(
+            first.weights,
+            effects={**first.weights.effects, **of_new},
+            best=own.hypothesis,
+            weather={**first.weights.weather, **of_day},
+        ),
         considered=_considered(first, again, new, chosen),
         decision=_decision(first, again, new),
         further=(*first.further, *new),
