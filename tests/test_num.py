@@ -176,7 +176,7 @@ def candidate(number):
 
 
 def diagnosed_weather(number):
-    path = {"horizon_s": 120.0, "error_without": None, "error_floor": None}
+    path = {"horizon_s": 120.0, "error_without": None, "error_floor": None, "weather": []}
     return {"weather": [candidate(number)], "path": path, "candidates": [], "resembles": []}
 
 

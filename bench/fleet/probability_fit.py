@@ -58,6 +58,7 @@ def _of_causes_beside(row: Row) -> list[FactsAndTruth]:
 
 
 def _of_nothing(row: Row) -> list[FactsAndTruth]:
+    """By the posterior, also of rows whose answer sets it aside (a stretch had a push of its own)."""
     f: Facts = row["read"]
     return [([log_odds(f.nothing), unnamed(f, decided_again(row, f))], not hidden_causes(row))]
 

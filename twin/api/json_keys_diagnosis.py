@@ -40,7 +40,9 @@ CANDIDATE = (
     ),
     *when("one is likely", TYPICAL_FORCE),
     *under("stream[]", STREAM),
-    JsonKey("error_horizon_s", "s", "how far ahead held-out parts are predicted", "one is likely"),
+    JsonKey(
+        "error_horizon_s", "s", "how far ahead held-out parts are predicted, in the mean", "one is likely"
+    ),
     JsonKey("error_without", "m", "open-loop error there with the day's weather alone", "one is likely"),
     JsonKey("error_with", "m", "the same with it, on parts not used to fit it", "one is likely"),
     JsonKey("error_floor", "m", "what is expected if it is the true cause", "one is likely"),
@@ -93,9 +95,10 @@ DIAGNOSE = (
     JsonKey("moments[].X_N", "N", "its force ahead", "there is one"),
     JsonKey("moments[].Y_N", "N", "its force to starboard", "there is one"),
     JsonKey("moments[].N_Nm", "N m", "its moment to starboard", "there is one"),
-    JsonKey("path.horizon_s", "s", "how far ahead held-out parts are predicted"),
+    JsonKey("path.horizon_s", "s", "how far ahead held-out parts are predicted, in the mean"),
     JsonKey("path.error_without", "m", "open-loop error there without any cause"),
     JsonKey("path.error_floor", "m", "what is expected of this ship when nothing is wrong"),
+    JsonKey("path.weather[]", "", "today's water and weather with which these errors are", "there is some"),
     JsonKey("p_value", "-", "how often a healthy voyage scores as high, by this ship's references, or null"),
     JsonKey("p_value_at_best", "-", "the least that so few references can show, or null"),
     JsonKey("p_value_references", "", "n, the reference voyages whose score the ship file has"),

@@ -51,7 +51,11 @@ def test_enough_references_ask_for_no_more():
 
 
 def test_a_ship_file_without_scores_says_what_to_do():
-    assert "calibrate again" in healthy_in_words({"p_value": None, "calibrated": True})
+    """Test: a ship that was never calibrated, asked alone and, as if calibrated, with reference voyages.
+    Expected: neither is told to calibrate a second time."""
+    of_references = healthy_in_words({"p_value": None, "calibrated": True})
+    assert "no scores of reference voyages: twin calibrate keeps them" in of_references
+    assert "again" not in of_references
     assert "never calibrated" in healthy_in_words({"p_value": None, "calibrated": False})
 
 

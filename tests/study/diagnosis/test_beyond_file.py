@@ -35,6 +35,15 @@ def test_what_is_farther_from_the_file_than_both_allow_is_beyond_it(ship, sd, be
     assert all(p["sd"] == 0.03 for p in found)
 
 
+@pytest.mark.parametrize("below, above", [(0.196, 0.196), (0.196, 0.01), (0.01, 0.196)])
+def test_an_interval_that_ends_with_its_box_leaves_today_as_unsure_as_it_is(ship, below, above):
+    """Test: by hand, 0.25 from the file's 0.8 +- 0.03 is within 3 sqrt(0.03^2 + 0.1^2) = 0.31, and 0.4 is not,
+    whichever end of today's interval is that of its box."""
+    for value, beyond in ((1.05, []), (1.2, ["c_x"])):
+        today = {"name": "c_x", "value": value, "low95": value - below, "high95": value + above, "unit": "-"}
+        assert [p["name"] for p in beyond_file(ship, "Wind", [today])] == beyond
+
+
 def test_a_ship_whose_file_knows_no_wind_has_none_beyond_it(ship):
     assert beyond_file(load("kvlcc2"), "Wind", told(0.01)) == []
     assert beyond_file(ship, "Current", told(0.01)) == []

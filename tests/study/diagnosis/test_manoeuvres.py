@@ -68,6 +68,19 @@ def test_fouling_and_a_worn_propeller_are_told_apart_where_the_speed_changes(cas
     assert "to 1" in advice["why"]
 
 
+def test_a_stream_may_be_the_rival_where_several_voyages_are_asked(case, tanker, voyages):
+    """Test: the same question of one voyage and of two, each of which has a stream of its own. Expected: beside
+    the first voyage's stream fouling is told apart by as much, and that stream itself shows."""
+    several = assemble([voyages["straight"], voyages["nothing"]], tanker)
+
+    def odds(case, *pair):
+        z = np.ones(len(case.effects))
+        return separation(case, sail(case, case.model, MANOEUVRES["speed changes"]), *pair, z)
+
+    for pair in (("HullFouling", "Current"), ("Current", "HullFouling")):
+        assert odds(several, *pair) == pytest.approx(odds(case, *pair), rel=0.2)
+
+
 def test_where_nothing_shows_the_manoeuvre_is_one_that_would_show_more(case):
     """Test: a straight run, which shows nothing of the rudder. Expected: a manoeuvre that turns the ship, what it
     would show, and no word of two effects that nobody asked about; nothing where nothing is to be shown."""

@@ -269,3 +269,30 @@ def test_weather_is_no_luxury_beside_a_cause():
     assert weighed[windy.effects] == pytest.approx(windy.log_evidence) and weighed[
         two.effects
     ] == pytest.approx(two.log_evidence - COMPLEXITY)
+
+
+def test_what_a_side_force_may_leave_is_the_same_in_whatever_order_the_voyages_are_given(
+    tanker, voyages, monkeypatch
+):
+    """Test: two windy voyages, in a stream of 1 m/s on the one and in none on the other. Expected: on each the
+    wind's lever is asked in its own stream."""
+    monkeypatch.setattr("twin.study.diagnosis.open_loop_check.held_out_error", lambda *_: 10.0)
+    days = {"Wind": 1.0, "Wind again": 0.0}
+
+    def levered(*names):
+        case = assemble([voyages[name] for name in names], tanker)
+        effects = case.ordered(("Wind", "Current"))
+        sizes = {u.label: days[u.voyage] / u.sd for u in case.effects if u.owner == "Current"}
+        z = np.array([sizes.get(u.label, float(u.owner == "Wind")) for u in case.effects])
+        mine = [i for i, u in enumerate(case.effects) if u.owner in effects]
+        models = tuple(case.at(mine, z, t) for t in case.tracks)
+        nothing = posterior(case.reduced(case.lines, case.scenarios(["usual"]))[0], ())
+        there = {
+            s: Found(
+                Hypothesis(s, "usual", 0.0, 0.0), replace(nothing, z=z), models[0], models=models if s else ()
+            )
+            for s in ((), effects)
+        }
+        return open_loop_check(case, there, [f.hypothesis for f in there.values()]).levered[effects]
+
+    assert levered("Wind", "Wind again") == pytest.approx(levered("Wind again", "Wind"), rel=1e-6)

@@ -72,3 +72,21 @@ def test_of_a_healthy_ship_in_a_stream_the_first_words_are_that_nothing_of_it_is
     assert sentences.weather_at_least(stream).startswith(
         "The model lacks water and weather of these voyages: "
     )
+
+
+@pytest.mark.parametrize(
+    "probability, not_named, says",
+    [
+        (0.13, {}, "something, but"),
+        (0.7, {}, "HullFouling (70 %), but"),
+        (0.7, {"HullFouling": "unlikely"}, "HullFouling (70 %), but"),
+        (
+            0.7,
+            {"PropellerWear": "comes_and_goes"},
+            "something that acts like PropellerWear and comes and goes",
+        ),
+    ],
+)
+def test_what_may_be_the_weather_is_called_by_a_name_only_where_that_is_likely(probability, not_named, says):
+    told = result(cause("HullFouling", probability)) | {"answer": {"not_named": not_named}}
+    assert f"the readings point to {says}" in sentences.weather(told)

@@ -63,11 +63,27 @@ def test_numbers_of_a_stream_that_changes_are_not_listed_one_by_one(kvlcc2):
         "typical_force": force, "stream": rows, "error_floor": 30.0, "error_horizon_s": 120.0,
         "error_without": 90.0, "error_with": 31.0, "cannot_be_told_from": [], "says": "",
     }  # fmt: skip
-    path = {"horizon_s": 120.0, "error_without": 31.0, "error_floor": 30.0}
+    path = {"horizon_s": 120.0, "error_without": 31.0, "error_floor": 30.0, "weather": ["VaryingCurrent"]}
     lines = weather_lines({"weather": [cause], "path": path, "candidates": [], "resembles": []})
     for text in ("\n".join(candidate_lines(cause)), "\n".join(lines)):
         assert "0.30 m/s toward 0 deg at 0 min" in text and "north_c1" not in text and "typically" not in text
     assert "31.0 m off after 120 s (30.0 m are expected)" in "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    "held, said", [(["Wind", "Current"], "with it the"), (["Wind"], "with Wind the"), ([], None)]
+)
+def test_how_near_the_model_comes_is_said_of_the_weather_with_which_it_does(held, said):
+    """Test: wind and a restless water of today, of which the model ran with both, one or none."""
+    number = {"name": "scatter", "value": 0.06, "unit": "m/s"}
+    today = [
+        {"effect": name, "probability": 0.9, "parameters": [number], "typical_force": None}
+        for name in ("Wind", "Current")
+    ]
+    path = {"horizon_s": 120.0, "error_without": 31.0, "error_floor": 30.0, "weather": held}
+    lines = weather_lines({"weather": today, "path": path, "candidates": [], "resembles": []})
+    ends = [line for line in lines if "the model ends 31.0 m off" in line]
+    assert [said in line for line in ends] == ([True] if said else [])
 
 
 @pytest.mark.parametrize(

@@ -69,3 +69,19 @@ def test_a_voyage_that_is_given_twice_is_refused(sailed, kvlcc2):
     copied = first.with_rows(first.time_s.copy(), {k: x.copy() for k, x in first.columns.items()})
     with pytest.raises(DataError, match="Give each voyage once"):
         assemble([first, copied], kvlcc2)
+
+
+def test_a_reference_voyage_that_is_asked_about_or_given_twice_is_refused(
+    sailed, kvlcc2, on_disk, verb, capsys
+):
+    """Its fault would be in what is known as healthy. By Python as by the command, in one line."""
+    first, other = sailed()[:2]
+    says = "reference voyage made: is the same voyage as made. Give each voyage once."
+    with pytest.raises(DataError, match=says):
+        assemble([first], kvlcc2, [other, first])
+    with pytest.raises(DataError, match=says.replace("as made", "as reference voyage made")):
+        assemble([first], kvlcc2, [other, other])
+    path = on_disk(first)
+    assert verb("diagnose", path, "--ship", "kvlcc2", "--reference", path) == 4
+    (line,) = [x for x in capsys.readouterr().err.splitlines() if "same voyage" in x]
+    assert says in line

@@ -18,7 +18,7 @@ from twin.recording.write import write_voyage
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
-from twin.study.update.added import FARTHER, notes, sailing_time, verdict
+from twin.study.update.added import FARTHER, effect_lines, notes, sailing_time, verdict
 from twin.study.update.adding import UNTOUCHED, Number, fitted
 from twin.study.update.addition import add
 from twin.study.update.fall import Fall
@@ -283,3 +283,17 @@ def test_weather_that_does_not_show_is_not_said_to_have_been_there(kvlcc2):
     told = notes(kvlcc2, made, [], [], False)
     assert any("had Current of their own" in x and "Wind" not in x for x in told)
     assert any("not clear on these voyages: Wind" in x for x in told)
+
+
+def test_of_an_effect_of_many_numbers_the_largest_is_told_with_its_unit():
+    """Test: the streams of three voyages. Expected: the largest of the six in m/s, whatever the others are."""
+    streams = {
+        f"{axis} of v{i}": {"value": 0.1 * i * sign, "unit": "m/s", "low95": 0.0, "high95": 0.1}
+        for i in (1, 2, 3)
+        for axis, sign in (("north", 1.0), ("east", -1.1))
+    }
+    (line,) = effect_lines({"Current": streams})
+    assert line == "  Current: 6 numbers, the largest east of v3 = -0.33 m/s"
+    turned = {f"n{i}": {"value": 0.01 * i, "unit": "rad"} for i in range(5)}
+    (both,) = effect_lines({"Current": streams | turned})
+    assert both.endswith("the largest east of v3 = -0.33 m/s, n4 = 2.3 deg")

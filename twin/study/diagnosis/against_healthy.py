@@ -42,8 +42,8 @@ def healthy_in_words(result: dict[str, Any]) -> str:
         if not result["calibrated"]:
             return UNCALIBRATED
         return (
-            "Against healthy voyages: not computed, the ship file lacks the scores of its reference voyages "
-            "(calibrate again)."
+            "Against healthy voyages: not computed, for the ship file has no scores of reference voyages: "
+            "twin calibrate keeps them, of two or more."
         )
     count, asked = result["p_value_references"], len(result["voyages"])
     reach, p = round(count * result["facts"]["reached"]), num(result["p_value"])

@@ -48,18 +48,24 @@ class SearchAnswer:
 
     @property
     def shown(self) -> Sets:
-        """The set of effects in which what is named stands with its numbers: the likeliest that was
-        relinearised with these causes and no other, beside whatever weather."""
+        """The set of effects in which what is named stands with its numbers: of those that were weighed to
+        the end the likeliest that was relinearised with these causes and no other, beside whatever weather;
+        else the likeliest that holds them. What is named of water and weather stands in it too, where any
+        set has both."""
         if self.joined:
             return self.joined
-        named, causes = set(self.decision.missing), set(self.causes)
-        own = {
-            s: self.path.with_path(f.hypothesis).log_weight
-            for s, f in self.found.items()
-            if named <= set(s) and set(self.case.causes(s)) == causes and self._stands(f)
-        }
-        wide = (h.effects for h in self.weighed if h.effects in self.found and named <= set(h.effects))
-        return max(own, key=lambda s: own[s], default=next(wide, self.weights.best.effects))
+        weighed = [s for s in dict.fromkeys(h.effects for h in self.weighed) if s in self.found]
+        causes = set(self.causes)
+        for wanted in (set(self.decision.missing), causes):
+            holding = [s for s in weighed if wanted <= set(s)]
+            own = [s for s in holding if set(self.case.causes(s)) == causes and self._stands(self.found[s])]
+            if holding:
+                return max(own, key=self._log_weight, default=holding[0])
+        return self.weights.best.effects
+
+    def _log_weight(self, chosen: Sets) -> float:
+        """Of a set about its own numbers, with where it leads the ship."""
+        return self.path.with_path(self.found[chosen].hypothesis).log_weight
 
     def _stands(self, found: Found) -> bool:
         """Whether no weather of a set is none, or needs no more than a simpler one."""

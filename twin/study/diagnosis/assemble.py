@@ -49,11 +49,12 @@ def assemble(
     references: Sequence[Voyage] = (),
     progress: Progress = silent,
 ) -> Case:
-    """Everything `search` needs. DataError: the voyages cannot be used at all; SettingsError: the ship file
-    does not hold a calibration as it was written."""
+    """Everything `search` needs. DataError: the voyages cannot be used at all, or one is given twice or as a
+    reference too; SettingsError: the ship file does not hold a calibration as it was written."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")
-    refuse_twice((v.name, samples_hash(v)) for v in voyages)
+    called = [v.name for v in voyages] + [f"reference voyage {v.name}" for v in references]
+    refuse_twice((name, samples_hash(v)) for name, v in zip(called, (*voyages, *references), strict=True))
     progress("smoothing tracks")
     tracks = [long_enough(track(v, ship), ship) for v in voyages]
     _refuse_pieces(tracks, Model.of(ship))

@@ -25,7 +25,8 @@ def beyond_file(ship: Ship, effect: str, parameters: Sequence[Mapping[str, Any]]
         sd = noted.get(p["name"], {}).get("sd") if p["name"] in filed else None
         if sd is None:
             continue
-        today = (p["high95"] - p["low95"]) / (2.0 * P95)
+        # the wider side: the other end may be that of its box
+        today = max(p["high95"] - p["value"], p["value"] - p["low95"]) / P95
         value = float(filed[p["name"]])
         if abs(p["value"] - value) > BEYOND * float(np.hypot(sd, today)):
             out.append({"name": p["name"], "value": value, "sd": float(sd), "unit": p["unit"]})

@@ -204,15 +204,15 @@ def settle(case: Case) -> Case:
     white, time = case.noise_model.white, float(case.model.ship.scale("time"))
     steps = [float(x) for x in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)]
     grid: list[tuple[Levels, float]] = [((x, x, x), sensor) for sensor in (1.0, 3.0) for x in steps]
-    uneven = tuple(_uneven(x, time) for x in case.lines)
+    unlike = tuple(uneven(x, time) for x in case.lines)
 
     def scores(lines: Sequence[Linear], tried: Sequence[tuple[Levels, float]] = grid) -> list[float]:
         noise_models = [_rougher(case.noise_model, *factors) for factors in tried]
         return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, noise_models)]
 
     lines, told = case.lines, scores(case.lines)
-    if any(x.track.ripple is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
-        lines, told = uneven, shaky
+    if any(x.track.ripple is not None for x in unlike) and max(shaky := scores(unlike)) > max(told) + UNEVEN:
+        lines, told = unlike, shaky
     levels, sensor = grid[int(np.argmax(told))]
     for axis in range(3):  # what pushes the ship in one of them need not do so in the others
         lower = [_with(levels, axis, x) for x in steps if x < levels[axis] > white[axis]]
@@ -232,7 +232,8 @@ def _with(levels: Levels, axis: int, level: float) -> Levels:
     return surge, sway, yaw
 
 
-def _uneven(line: Linear, time: float) -> Linear:
+def uneven(line: Linear, time: float) -> Linear:
+    """The same voyage read with a scatter of its own at every moment. `time`: L/U_0 [s]."""
     shown = shaken(line.shown, time)
     return replace(line, shown=shown, track=replace(line.track, ripple=shown.ripple))
 

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from twin.physics.ship_notes import read_from
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.criteria import CLEAR, SURE, USUAL
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
+from twin.study.diagnosis.healthy_score import against_healthy
 from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.irregular import comes_and_goes
 from twin.study.diagnosis.moments import Moment, moments
@@ -31,9 +31,8 @@ from twin.study.diagnosis.verdict import (
 from twin.study.estimation.rarity import P95, deviations
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
-from twin.study.reference.healthy import Healthy, always_weighed, compared, score
+from twin.study.reference.healthy import Healthy
 from twin.study.reference.seaway import at_sea
-from twin.study.reference.structure import noise_model_of
 
 NO_GAP = 1e3  # log Bayes factor written where there is nothing to compare with
 
@@ -146,20 +145,6 @@ def of_any_day(case: Case, found: Found) -> tuple[str, ...]:
             day = usual.get(u.label, 0.0)
             size[u.owner] = max(size.get(u.owner, 0.0), abs(u.sd * z) / day if day else np.inf)
     return tuple(name for name, times in size.items() if times <= ANY_DAY)
-
-
-def against_healthy(case: Case) -> Healthy | None:
-    """How rare these voyages would be on this ship in health, by its reference voyages
-    (reference/healthy.py)."""
-    with read_from(case.model.ship, "[structural] left_out_scores"):
-        scores = list(map(float, case.model.ship.notes.get("structural", {}).get("left_out_scores", [])))
-    noise_model = noise_model_of(case.model.ship, "beside")
-    if not scores or noise_model is None:
-        return None
-    its = {type(e) for e in case.model.effects}
-    causes = [n for n in case.names(case.candidates) if always_weighed(case.catalogue[n], its)]
-    own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in case.lines]
-    return compared(own, scores)
 
 
 def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> Sets:

@@ -22,7 +22,7 @@ from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.consider import Considered, joint_significance
 from twin.study.diagnosis.further import with_further
-from twin.study.diagnosis.horizon import horizon_s
+from twin.study.diagnosis.horizon import mean_horizon_s
 from twin.study.diagnosis.manoeuvres import next_manoeuvre, showing
 from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.overtime import PARTS, over_time
@@ -36,6 +36,7 @@ from twin.study.diagnosis.verdict import (
     restless_water,
     rivals,
     typical_force,
+    with_steady_stream,
 )
 from twin.study.estimation.start import waves_on
 from twin.study.reference.nuisance import learned_since
@@ -63,8 +64,9 @@ def diagnose(
     references: Sequence[Voyage] = (),
     progress: Progress = silent,
 ) -> Diagnosed:
-    """Judge all candidates jointly on these voyages. DataError: there is none, one is given twice or too
-    short, or a sign, unit or frame of one is proved wrong; SettingsError: the ship file is damaged."""
+    """Judge all candidates jointly on these voyages. DataError: there is none, one is too short, or given
+    twice or as a reference too, or a sign, unit or frame of one is proved wrong; SettingsError: the ship file
+    is damaged."""
     checks = of_voyages([*voyages, *references], ship)
     case = assemble(voyages, ship, references, progress)
     told = with_further(
@@ -85,9 +87,10 @@ def diagnose(
         },
         "moments": [m.as_json(case.model) for m in considered.pushes],
         "path": {
-            "horizon_s": horizon_s(case.tracks[0], case.model),
+            "horizon_s": mean_horizon_s(case.tracks, case.model),
             "error_without": base.open_loop_error_m,
             "error_floor": base.expected_error_m,
+            "weather": list(with_steady_stream(case, considered.base) if base.steady else considered.base),
         },
         "next_manoeuvre": _next(told, listed, progress),
         **_circumstances(told, [c["effect"] for c in listed]),
@@ -192,7 +195,7 @@ def _candidate(told: SearchAnswer, name: str, posterior: float) -> dict[str, Any
         else None,
         "typical_force": typical_force(case, best, name),
         "stream": set_and_rate(case, best, name),
-        "error_horizon_s": horizon_s(case.tracks[0], case.model),
+        "error_horizon_s": mean_horizon_s(case.tracks, case.model),
         "error_without": _without(case, found, considered, name),
         "error_with": held_out_error(case, best)
         if np.isnan(best.open_loop_error_m)

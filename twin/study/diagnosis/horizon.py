@@ -20,13 +20,42 @@ def horizon_s(track: Track, model: Model) -> float:
     most = min(
         HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * track.h * (len(track) - 1)
     )
-    wait = int(np.median(np.diff(_placed(track), prepend=0, append=len(track))))
+    wait = _wait(track)
     if wait <= 1:
         return most
     steps = coarse_steps(track, model)
     longest = steps * max(1, int(most / track.h / steps))
     leads = range(longest, max(0, longest - steps * wait), -steps)
     return track.h * max(leads, key=lambda lead: valid_windows(track, lead))
+
+
+def mean_horizon_s(tracks: Sequence[Track], model: Model) -> float:
+    """How far ahead the mean error of these tracks looks [s]: the mean over the parts that are judged of all
+    of them, each as far as its own track has it."""
+    ahead = [horizon_s(t, model) for t in tracks]
+    if len(set(ahead)) == 1:
+        return ahead[0]
+    count = [valid_windows(t, round(h / t.h)) for t, h in zip(tracks, ahead, strict=True)]
+    return float(np.average(ahead, weights=count))
+
+
+def where_read(tracks: Sequence[Track], horizons_s: Sequence[float]) -> list[float]:
+    """The same of any times ahead [s] at which several tracks are judged together: where positions of all of
+    them are read more slowly than they are bridged, each as far as the most parts end at one, less those by
+    which none does."""
+    waits = [_wait(t) for t in tracks]
+    if min(waits) <= 1:
+        return list(horizons_s)
+    step_s, wait_s = min(t.h for t in tracks), max(w * t.h for w, t in zip(waits, tracks, strict=True))
+    found = []
+    for horizon in horizons_s:
+        longest = max(1, round(horizon / step_s))
+        leads = range(longest, max(0, longest - int(np.ceil(wait_s / step_s))), -1)
+        count = {k: sum(valid_windows(t, round(k * step_s / t.h)) for t in tracks) for k in leads}
+        best = max(leads, key=lambda k: count[k])
+        if count[best]:
+            found.append(horizon if best == longest else best * step_s)
+    return sorted(set(found))
 
 
 def require_positions(tracks: Sequence[Track], model: Model) -> None:
@@ -44,6 +73,11 @@ def too_sparse(tracks: Sequence[Track], model: Model) -> DataError:
         f"{num(ahead)} s apart with the controls known between: how far off a prediction ends cannot be "
         f"judged. Record both at least every {as_given(BRIDGE_S)} s."
     )
+
+
+def _wait(track: Track) -> int:
+    """Grid steps from one place and heading to the next, usually [count]."""
+    return int(np.median(np.diff(_placed(track), prepend=0, append=len(track))))
 
 
 def _placed(track: Track) -> np.ndarray:

@@ -144,8 +144,8 @@ MANOEUVRES: dict[str, Manoeuvre] = {
 
 
 def sail(case: Case, model: Model, manoeuvre: Manoeuvre) -> Track:
-    """The track of a manoeuvre that the model sails in the weather of the case's first track, without what
-    that did not record; NaN from where it runs away."""
+    """The track of a manoeuvre that the model sails in the water and weather of the case's first track, whose
+    name it has, without what that did not record; NaN from where it runs away."""
     like = case.tracks[0]
     model, _ = model.without_inputs(like.missing())
     parts, speed = bool(model.ship.actuators), float(np.median(like.state[:, 3]))
@@ -176,7 +176,7 @@ def sail(case: Case, model: Model, manoeuvre: Manoeuvre) -> Track:
     # only which readings there are counts: information does not depend on their values
     measured[:, seen] = 0.0
     return Track(
-        "planned",
+        like.name,
         h * np.arange(steps),
         h,
         states,

@@ -134,7 +134,7 @@ def open_loop_check(
     levered = {
         s: before.levered[s]
         if s in known and before
-        else _levered(case, found[s].model, set(s) - case.present)
+        else _levered(case, [found[s].on(i) for i in range(len(case.tracks))], set(s) - case.present)
         for s in off
     }
     ends = {
@@ -259,23 +259,24 @@ def roughly(case: Case) -> float:
     """How far off [m] the forms of effects may leave it that are in the model since it was calibrated: a
     share of where it would be without, and where it would be if their side force attacked elsewhere."""
     left = [share * mean_error_m(case, without) for without, share in added(case.model)]
-    return float(np.hypot.reduce([_levered(case, case.model), *left]))
+    return float(np.hypot.reduce([_levered(case, [case.model]), *left]))
 
 
-def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> float:
+def _levered(case: Case, models: Sequence[Model], names: Collection[str] | None = None) -> float:
     """How far off [m] the side forces of a model's effects may leave it that attack elsewhere along it than
-    their forms have it."""
+    their forms have it. `models`: one, or one of each voyage."""
     left = 0.0
-    for both in elsewhere(model, names):
-        left += max(0.0, 0.5 * sum(mean_error_m(case, m) ** 2 for m in both) - mean_error_m(case, model) ** 2)
+    for of_voyages in zip(*(elsewhere(m, names) for m in models), strict=True):
+        there = 0.5 * sum(mean_error_m(case, *moved) ** 2 for moved in zip(*of_voyages, strict=True))
+        left += max(0.0, there - mean_error_m(case, *models) ** 2)
     return float(np.sqrt(left))
 
 
-def mean_error_m(case: Case, model: Model) -> float:
-    """Mean position error [m] of a model over all of the voyages."""
+def mean_error_m(case: Case, *models: Model) -> float:
+    """Mean position error [m] over all of the voyages of one model, or of one of each voyage."""
     errors = (
-        _errors(coarse(t, model.without_inputs(t.missing())[0], horizon_s(t, case.model), leads=1), MODEL)
-        for t in case.tracks
+        _errors(coarse(t, m.without_inputs(t.missing())[0], horizon_s(t, case.model), leads=1), MODEL)
+        for t, m in zip(case.tracks, models if models[1:] else models * len(case.tracks), strict=True)
     )
     return float(np.nanmean(np.concatenate(list(errors))))
 

@@ -108,7 +108,7 @@ def pushed(result: Result) -> str:
 
 def comes_and_goes(result: Result) -> str:
     """Something is missing that does not act all the time."""
-    fitful = [name for name, why in result["answer"]["not_named"].items() if why == "comes_and_goes"]
+    fitful = _fitful(result)
     told = [c for c in result["candidates"] if c["effect"] in fitful]
     says = [f"{c['effect']}, which would last: {c['says']}" for c in told]
     when = next((acting(c["over_time"]) for c in told if c.get("over_time")), "comes and goes")
@@ -147,7 +147,10 @@ def no_manoeuvre(result: Result) -> str:
 
 def weather(result: Result) -> str:
     """It may be the weather."""
-    says = next((likely(result, c["effect"]) for c in result["candidates"]), "something")
+    fitful, near = _fitful(result), _near(result)
+    says = likely(result, near[0]) if near else "something"
+    if fitful:
+        says = f"something that acts like {fitful[0]} and comes and goes"
     return f"Undecided: the readings point to {says}, but {ROUGHLY}. A calmer voyage would tell."
 
 
@@ -248,6 +251,11 @@ def _more(result: Result) -> str:
         if result["more"]
         else ""
     )
+
+
+def _fitful(result: Result) -> list[str]:
+    """What acts like a cause that lasts, and comes and goes."""
+    return [name for name, why in result["answer"]["not_named"].items() if why == "comes_and_goes"]
 
 
 def _near(result: Result) -> list[str]:

@@ -99,11 +99,14 @@ def weather_lines(result: dict[str, Any]) -> list[str]:
                 f"{w['effect']} may be something else that acts like it"
             )
     path, causes = result["path"], result["candidates"] + result["resembles"]
-    if path["error_without"] is not None and not causes:
+    listed = [w["effect"] for w in result["weather"]]
+    held = [name for name in listed if name in path["weather"]]
+    if held and path["error_without"] is not None and not causes:
         lines.append(
-            f"        with it the model ends {num(path['error_without'], 3)} m off after "
-            f"{path['horizon_s']:.0f} s ({num(path['error_floor'], 3)} m are expected); twin compare allows "
-            "for no water and wind but the ship file's"
+            f"        with {'it' if held == listed else ' and '.join(held)} the model ends "
+            f"{num(path['error_without'], 3)} m off after {path['horizon_s']:.0f} s "
+            f"({num(path['error_floor'], 3)} m are expected); twin compare allows for no water and wind but "
+            "the ship file's"
         )
     return [*lines, ""]
 

@@ -70,7 +70,7 @@ def _metres(result: dict[str, Any], shown: Fall) -> str:
         f"{num(healthy['heading_mae_deg'], 2)} deg"
     )
     return (
-        f"{as_given(shown.horizon_s)} s open-loop error from {num(b['position_mae_m'], 3)} to "
+        f"{as_given(shown.horizon_s, 4)} s open-loop error from {num(b['position_mae_m'], 3)} to "
         f"{num(a['position_mae_m'], 3)} m and {turned} ({usual})"
     )
 
@@ -210,7 +210,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     for r in result["horizons"]:
         b, a, n = r["before"], r["after"], r["noise_floor"]
         out.append(
-            f"{as_given(r['horizon_s']):>6} s"
+            f"{as_given(r['horizon_s'], 4):>6} s"
             f"{num(b['position_mae_m'], 3):>13}{num(a['position_mae_m'], 3):>12}"
             f"{num(n['position_mae_m'], 2):>14}{num(b['heading_mae_deg'], 2):>15}"
             f"{num(a['heading_mae_deg'], 2):>13}{num(n['heading_mae_deg'], 2):>16}"
@@ -222,22 +222,30 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     out += [f"log likelihood ratio by horizon ({result['proof']['kind']}): {', '.join(at)}"]
     out += ["", "what was fitted (95 %)", *number_lines(result["parameters"])]
     if result["beside"]:
-        out += ["water and weather of these voyages, not written", *_effect_lines(result["beside"])]
+        out += ["water and weather of these voyages, not written", *effect_lines(result["beside"])]
     out += ["", "by regime: before, after [m]"] + [
         f"  {num(w['before_m'], 3):>8}{num(w['after_m'], 3):>9}  {w['condition']}" for w in result["where"]
     ]
     return [*out, "", *result["notes"]]
 
 
-def _effect_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
-    """An effect of few numbers in full; of a stream that varies how strong it was."""
+def effect_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
+    """An effect of few numbers in full; of a stream that varies, or of several voyages, the largest of each
+    unit."""
     few = {effect: numbers for effect, numbers in parameters.items() if len(numbers) <= FEW}
-    many = (effect for effect in parameters if effect not in few)
-    sizes = {effect: sum(p["value"] ** 2 for p in parameters[effect].values()) ** 0.5 for effect in many}
+    many = ((effect, numbers) for effect, numbers in parameters.items() if effect not in few)
     return number_lines(few) + [
-        f"  {effect}: {num(size, 2)} together, of {len(parameters[effect])} numbers"
-        for effect, size in sizes.items()
+        f"  {effect}: {len(numbers)} numbers, the largest {', '.join(_largest(numbers))}"
+        for effect, numbers in many
     ]
+
+
+def _largest(numbers: dict[str, dict[str, Any]]) -> list[str]:
+    """Of the numbers of an effect the largest in each unit, with its name."""
+    units = dict.fromkeys(p["unit"] for p in numbers.values())
+    each = ({n: p for n, p in numbers.items() if p["unit"] == unit} for unit in units)
+    names = (max(alike, key=lambda n: abs(alike[n]["value"])) for alike in each)
+    return [_size(n, numbers[n], 2) for n in names]
 
 
 def number_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:

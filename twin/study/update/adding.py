@@ -172,16 +172,16 @@ def _numbers(case: Case, found: Found) -> list[Number]:
         f"{name}.{p['name']}": p for name in found.hypothesis.effects for p in parameters(case, told, name)
     }
     return [
-        _number(u, said[u.label], found.posterior, told, i)
+        _number(u, said[u.label], told, i)
         for name in found.hypothesis.effects
         for i, u in enumerate(case.effects)
         if u.owner == name and u.label in said
     ]
 
 
-def _number(u: Unknown, said: Mapping[str, Any], z: Posterior, told: Posterior, i: int) -> Number:
+def _number(u: Unknown, said: Mapping[str, Any], told: Posterior, i: int) -> Number:
     """Unknown `i` of the effects, with the interval that was `said` of it."""
-    value = in_file(u.centre + u.sd * float(z.z[i]), u.lo, u.hi)
+    value = in_file(u.centre + u.sd * float(told.z[i]), u.lo, u.hi)
     return Number(
         u.owner,
         u.full_name,
@@ -190,7 +190,7 @@ def _number(u: Unknown, said: Mapping[str, Any], z: Posterior, told: Posterior, 
         u.sd * float(np.sqrt(told.covariance[i, i])),
         min(float(said["low95"]), value),
         max(float(said["high95"]), value),
-        abs(1.0 - float(z.covariance[i, i])),
+        abs(1.0 - float(told.covariance[i, i])),
         at_an_end(value, u.lo, u.hi, u.centre, u.sd),
     )
 

@@ -50,7 +50,7 @@ def add(
 ) -> Added:
     """Fit the effects to the voyages and judge them on the held-out ones; without any on the last third of
     each, or (`cross_validated`) on every third in turn. DataError: a sign, unit or frame of one is proved
-    wrong."""
+    wrong, or what is held out is too short, or has too few positions, to judge by."""
     checks = of_voyages([s.voyage for s in (*sailed, *held_out)], ship)
     for effect in effects:
         effect.plausible(ship).check(ship)
@@ -67,8 +67,8 @@ def add(
         float(ship.scale("time")),
     )
     structural = noise_model_of(ship) is not None
-    rows = error_rows(windows.before, windows.after, HORIZONS_S, ship, structural)
-    shown = fall(windows.before, windows.after, [row["horizon_s"] for row in rows])
+    rows = error_rows(windows.before, windows.after, windows.shown_s, ship, structural)
+    shown = fall(windows.before, windows.after, [row["horizon_s"] for row in rows] or windows.horizons_s)
     parts = (
         {} if kind == HELD_OUT else {"part": "last third" if kind == LAST_THIRD else "every third in turn"}
     )

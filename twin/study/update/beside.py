@@ -3,6 +3,7 @@ as the search of a diagnosis weighs it (search.py), with where each set leads th
 number that `twin diagnose` told."""
 
 from twin.recording.progress import Progress, silent
+from twin.study.diagnosis.afloat import floats
 from twin.study.diagnosis.case import SCENARIOS, Case, visible
 from twin.study.diagnosis.hollow import nothing
 from twin.study.diagnosis.open_loop_check import open_loop_check
@@ -86,10 +87,13 @@ class WeatherSearch:
         return " + ".join(n for n in chosen if n not in self.names)
 
     def likeliest(self) -> Found:
-        """The likeliest set, by the readings one step ahead and by where it leads the ship."""
+        """The likeliest set, by the readings one step ahead and by where it leads the ship, of those that a
+        diagnosis would keep; the named effects alone where it would keep none."""
         asked = open_loop_check(self.case, self.found, [f.hypothesis for f in self.found.values()])
-        found = [asked.found.get(s, self.found[s]) for s in self.stand]
-        return max(found, key=lambda f: asked.with_path(f.hypothesis).log_weight)
+        afloat = (self.found[s] for s in self.stand if floats(self.case, self.found[s]))
+        kept = [h.effects for h in asked.weigh([f.hypothesis for f in afloat])]
+        best = kept[0] if kept else self.names
+        return asked.found.get(best, self.found[best])
 
     def _may_stand_beside(self, name: str, chosen: Sets) -> bool:
         """Whether an effect is water or weather of the voyage (not of its place), new beside these, and

@@ -63,7 +63,7 @@ def fall(before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequen
     name = "position" if reading is None else list(MEASURED.values())[reading]
     unit = "m" if reading is None else UNITS[reading]
     mean_b, mean_a = (float(x.mean()) if x.size else float("nan") for x in (b, a))
-    return Fall(f"{name} error at {as_given(horizon)} s", unit, mean_b, mean_a, low, high, b.size, horizon)
+    return Fall(f"{name} error at {as_given(horizon, 4)} s", unit, mean_b, mean_a, low, high, b.size, horizon)
 
 
 def _reading(before: Sequence[Windows], after: Sequence[Windows]) -> int | None:

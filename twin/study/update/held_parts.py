@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.physics.model import Model
+from twin.study.diagnosis.horizon import require_positions, where_read
 from twin.study.prediction.left_out import horizons
 from twin.study.prediction.openloop import Windows
 from twin.study.prediction.own_water import settled, shown_best
@@ -31,31 +32,36 @@ class HeldParts:
     judged_after: list[Windows]
     errors: PathError
     horizons_s: list[float]  # that are judged
+    shown_s: list[float]  # and that are shown
 
 
 def predicted(
     made: Fitted, tracks: Sequence[Track], shown_s: Sequence[float], cross_validated: bool = False
 ) -> HeldParts:
     """Of every track (`shown_s`: horizons of the table, beside those that are judged); `cross_validated`: the
-    tracks are those of the fit.
+    tracks are those of the fit. DataError: positions are read too seldom to judge a prediction by.
 
     Effects of the voyage are judged for what they are where nothing else was named, without any other stream.
     Beside lasting effects they are not judged: the stream that the held-out voyage shows stands in their
     place."""
     base = made.case.model
     models = made.of_parts() if cross_validated else [made.model]
-    judged_s = horizons(base, tracks, 1.0 / HORIZONS_HELD)
-    asked = sorted({*judged_s, *shown_s})
+    held_s = horizons(base, tracks, 1.0 / HORIZONS_HELD)
+    if not (judged_s := where_read(tracks, held_s)):
+        require_positions(tracks, base)
+        judged_s = held_s
+    table_s = where_read(tracks, shown_s) or judged_s
+    asked = sorted({*judged_s, *table_s})
     errors = errors_of(base.ship, tracks, asked)
     before, after = (_each(tracks, some, asked) for some in ([base] * len(models), models))
     if not lasting(made.names):
-        return HeldParts(before, after, before, after, errors, judged_s)
+        return HeldParts(before, after, before, after, errors, judged_s, table_s)
     middle = shown_best(judged_s, base)
     own = [_lasting(base, m, made.names) for m in models]
     known_before, known_after = (
         _each(tracks, some, asked, (errors.at(middle), middle)) for some in ([base] * len(models), own)
     )
-    return HeldParts(before, after, known_before, known_after, errors, judged_s)
+    return HeldParts(before, after, known_before, known_after, errors, judged_s, table_s)
 
 
 def _lasting(base: Model, model: Model, names: Sequence[str]) -> Model:

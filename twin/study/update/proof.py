@@ -27,6 +27,7 @@ from scipy.special import stdtrit
 
 from twin.errors import DataError
 from twin.num import as_given
+from twin.study.diagnosis.horizon import where_read
 from twin.study.estimation.rarity import P95
 from twin.study.prediction.envelope import widening
 from twin.study.prediction.error_vectors import vectors
@@ -99,7 +100,7 @@ def prove(
     `time_s`: L/U_0, in which the ship sails its length."""
     asked = [h for h in horizons_s if sum(independent(w, h) for w in before) >= LEAST_PROOF_WINDOWS]
     least = min(max(HORIZONS_S), LENGTHS * time_s)
-    if max(asked, default=0.0) < 0.99 * least:
+    if max(asked, default=0.0) < 0.99 * min([least, *where_read([w.track for w in before], [least])]):
         raise DataError(
             f"{', '.join(w.track.name for w in before)}: what is left to judge by does not hold "
             f"{as_given(LEAST_PROOF_WINDOWS)} windows of {least:.0f} s that do not overlap. Give a longer "
