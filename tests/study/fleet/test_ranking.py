@@ -36,11 +36,16 @@ def test_a_cause_is_there_since_the_first_voyage_after_the_last_healthy_one():
 def test_a_size_that_grows_by_a_twentieth_a_month_is_a_trend_with_that_slope():
     days = [f"2026-{month:02d}-01T00:00:00+00:00" for month in range(1, 8)]
     sizes = [{"start_time_utc": d, **size(0.1 + 0.05 * i)} for i, d in enumerate(days)]
-    found = trend(sizes)
+    found = trend(sizes, range(7))
     assert found["per"] == "month" and found["slope"] == pytest.approx(0.05, rel=0.03)
     assert found["low95"] < 0.05 < found["high95"]
-    assert trend(sizes[:2]) is None
-    assert trend([s | {"start_time_utc": None} for s in sizes])["per"] == "voyage"
+    assert trend(sizes[:2], range(2)) is None
+
+
+def test_a_trend_without_dates_counts_the_voyages_on_which_the_cause_was_not_weighed_too():
+    sizes = [{"start_time_utc": None, **size(value)} for value in (0.0, 0.1, 0.9)]
+    found = trend(sizes, [0, 1, 9])
+    assert found["per"] == "voyage" and found["slope"] == pytest.approx(0.1)
 
 
 def test_the_interval_of_a_trend_covers_as_often_as_it_says_although_sizes_scatter_more_than_theirs():
@@ -48,7 +53,9 @@ def test_the_interval_of_a_trend_covers_as_often_as_it_says_although_sizes_scatt
     inside = 0
     for _ in range(300):
         values = 0.1 + rng.normal(0.0, 0.1, len(days))  # intervals say 0.05
-        found = trend([{"start_time_utc": d, **size(v)} for d, v in zip(days, values, strict=True)])
+        found = trend(
+            [{"start_time_utc": d, **size(v)} for d, v in zip(days, values, strict=True)], range(len(days))
+        )
         inside += found["low95"] <= 0.0 <= found["high95"]
     assert 0.92 <= inside / 300 <= 0.99
 

@@ -1,11 +1,16 @@
 """A fault is seen where fits of their own bear it out, not where one fit's scatters shrank with it."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from tests.thorough import thorough
 from twin.recording.voyage import Voyage
+from twin.study.instruments.findings import _early
 from twin.study.instruments.instrument_estimate import estimate
+from twin.study.instruments.instrument_samples import of_voyage
 
 SPEED_MPS, SWAY_PER_TURN_M = 7.0, -60.0
 
@@ -50,3 +55,26 @@ def test_sound_instruments_of_a_ship_that_hardly_turns_have_no_fault(turn_deg):
     found = estimate([hardly_turning(turn_deg)], own=False, varying=True)
     assert found.faults == ()
     assert all(factor <= 5.0 for factor in found.log_bayes_factors.values())
+
+
+def test_what_was_read_after_the_heading_was_lost_is_compared_with_nothing():
+    """Test: the compass fails after a third of the voyage. Expected: the readings of all end there, and an
+    instrument that begins later is none."""
+    late = hardly_turning(20.0, 1200.0)
+    lost, later = late.time_s > 400.0, late.time_s > 390.0
+    cut = {name: x.copy() for name, x in late.columns.items()}
+    cut["heading_true_north_deg"][lost] = np.nan
+    cut["surge_velocity_through_water_mps"][~later] = np.nan
+    read = of_voyage(replace(late, columns=cut))
+    assert {kind: float(s.t[-1]) for kind, s in read.by.items()} == dict.fromkeys(read.by, 400.0)
+    assert "place" in read.by and "log" not in read.by
+
+
+def test_an_age_below_zero_is_no_fault():
+    """No instrument is early; the readings of a voyage on one course may ask for that all the same."""
+    fault, late = np.array(["gnss_delay", "gnss_delay", "log_scale"]), np.array([True, True, False])
+    book = SimpleNamespace(fault=fault, late=late)
+    of = lambda *mean: SimpleNamespace(at=np.arange(3), mean=np.array(mean))
+    assert _early(book, of(-2.5, -0.1, -0.3), "gnss_delay")
+    assert not _early(book, of(-2.5, 0.1, -0.3), "gnss_delay")
+    assert not _early(book, of(-2.5, -0.1, -0.3), "log_scale")

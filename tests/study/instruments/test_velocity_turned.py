@@ -1,10 +1,12 @@
 """What turned the velocity into the ship's axes, from the noise of heading and velocity alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.study.instruments.test_instruments import voyage
-from twin.study.instruments.instrument_samples import of_voyage
+from twin.study.instruments.instrument_samples import ReadingSamples, of_voyage
 from twin.study.instruments.velocity_turned import UNKNOWN, TurnedShare, turned_share
 
 HEADING, U, V = "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps"
@@ -78,3 +80,12 @@ def test_voyages_that_contradict_each_other_are_believed_less():
     alike, apart = [sailed(seed, "compass") for seed in (1, 2)], [sailed(1, "compass"), sailed(2, "receiver")]
     assert turned_share(apart).sd > 3.0 * turned_share(alike).sd
     assert turned_share(apart).by == ""
+
+
+def test_a_heading_that_stands_still_says_nothing():
+    """Shown in whole degrees, on one course."""
+    one = sailed(1, "compass")
+    still = {
+        k: ReadingSamples(s.t, 0.0 * s.y) if k == "heading at velocity" else s for k, s in one.by.items()
+    }
+    assert turned_share([replace(one, by=still)]) == UNKNOWN

@@ -70,3 +70,8 @@ def test_worst_windows_do_not_overlap_and_come_worst_first(windows):
     ratios, starts = [w["error_ratio"] for w in found], sorted(w["start_s"] for w in found)
     assert len(found) == 5 and ratios == sorted(ratios, reverse=True)
     assert min(np.diff(starts)) >= 120.0 and all(w["end_s"] - w["start_s"] == 120.0 for w in found)
+
+
+def test_the_worst_window_of_each_of_two_voyages_of_one_name_is_told(windows):
+    once, twice = (locate.worst([*windows[:1]] * k, 120.0) for k in (1, 2))
+    assert [w["start_s"] for w in twice[:2]] == [once[0]["start_s"]] * 2

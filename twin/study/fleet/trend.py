@@ -60,19 +60,15 @@ def _over_time(now: Mapping[str, Any], judged: Sequence[dict[str, Any]]) -> dict
     weighed = [(i, v, c) for i, v in enumerate(judged) for c in v["causes"] if c["effect"] == effect]
     healthy = max((i for i, v in enumerate(judged) if v["verdict"] == "nothing_missing"), default=-1)
     since = next(v for i, v, c in weighed if i > healthy and c["named"])
-    sizes = [
-        {**dated(v), "named": c["named"], **p}
-        for _, v, c in weighed
-        for p in c["parameters"]
-        if p["name"] == number.get("name")
-    ]
+    found = [(i, v, c, p) for i, v, c in weighed for p in c["parameters"] if p["name"] == number.get("name")]
+    sizes = [{**dated(v), "named": c["named"], **p} for _, v, c, p in found]
     return {k: v for k, v in now.items() if k not in ("parameters", "named")} | {
         "number": number or None,
         "since": dated(since),
         "named_on": sum(c["named"] for *_, c in weighed),
         "of_voyages": len(judged),
         "sizes": sizes,
-        "trend": trend(sizes),
+        "trend": trend(sizes, [i for i, *_ in found]),
     }
 
 
@@ -92,9 +88,10 @@ def _sd(p: Mapping[str, Any]) -> float:
     return max(p["high95"] - p["value"], p["value"] - p["low95"], 1e-12) / P95
 
 
-def trend(sizes: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
+def trend(sizes: Sequence[Mapping[str, Any]], voyages: Sequence[int]) -> dict[str, Any] | None:
     """Slope of a size by weighted least squares with its 95 % interval: a month where the dates span one,
-    else a voyage; None of fewer than three sizes.
+    else a voyage; None of fewer than three sizes. `voyages`: the place of each size's voyage among all of the
+    ship.
 
     Where the sizes scatter more than their intervals, the interval is wider by as much (Birge 1932), by
     Student's t.
@@ -103,7 +100,7 @@ def trend(sizes: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
         return None
     when = np.array([moment_of(s["start_time_utc"]) / MONTH_S for s in sizes])
     dated = all(s["start_time_utc"] for s in sizes) and np.ptp(when) >= 1.0
-    x = when if dated else np.arange(float(len(sizes)))
+    x = when if dated else np.array(voyages, float)
     y, w = np.array([s["value"] for s in sizes]), np.array([_sd(s) for s in sizes]) ** -2
     x = x - np.sum(w * x) / np.sum(w)
     spread, mean = float(np.sum(w * x**2)), float(np.sum(w * y) / np.sum(w))

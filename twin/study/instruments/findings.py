@@ -93,9 +93,9 @@ def said(
     """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
     for each voyage, in the order of the fit; `prompt`: the ages that are none by definition, first that from
     which those of heading and rate count; `refitted`: log Bayes factors of faults by fits of their own with
-    them and without, which are believed where they are the lesser (refits.py). A fault of the likeliest set is seen when its log Bayes factor,
-    or that of it and what would stand in its place together, is above FAULT_BAYES_FACTOR; in the latter case
-    alone these voyages do not tell it from that."""
+    them and without, which are believed where they are the lesser (refits.py). A fault of the likeliest set
+    is seen when its log Bayes factor, or that of it and what would stand in its place together, is above
+    FAULT_BAYES_FACTOR; in the latter case alone these voyages do not tell it from that."""
     refuted = [f for f, factor in refitted.items() if factor <= FAULT_BAYES_FACTOR]
     book = WeighedSets(found, prompt, refuted)
     best = book.likeliest()
@@ -104,7 +104,7 @@ def said(
     untold = [f for f in best.faults if factor[f] <= FAULT_BAYES_FACTOR]
     instead = {f: book.instead(f, best) if f in untold else () for f in best.faults}
     of_any = {f: min(book.bayes_factor(f, best, instead[f]), refitted.get(f, np.inf)) for f in best.faults}
-    faults = tuple(f for f in best.faults if of_any[f] > FAULT_BAYES_FACTOR)
+    faults = tuple(f for f in best.faults if of_any[f] > FAULT_BAYES_FACTOR and not _early(book, best, f))
     estimates = tuple(
         e for i in range(found.at.size) if (e := _one(i, readings, book, best, faults, factor, everything))
     )
@@ -125,6 +125,12 @@ def said(
         velocity_by,
         found,
     )
+
+
+def _early(book: WeighedSets, best: Weighed, fault: str) -> bool:
+    """Whether a fault is an age, or the like, that is not above zero anywhere: no instrument is early."""
+    of_best = book.fault[best.at] == fault
+    return bool(book.late[best.at][of_best].all() and (best.mean[of_best] <= 0.0).all())
 
 
 def _one(
@@ -209,7 +215,11 @@ def _relative(
     reference = "gnss_delay" if tied and "gnss_delay" in (clock, *aged.faults) else clock
     out = {}
     for name, age in AGES.items():
-        if name not in problems[0].by or age == reference or (age not in aged.faults and age != clock):
+        if (
+            not any(name in p.by for p in problems)
+            or age == reference
+            or (age not in aged.faults and age != clock)
+        ):
             continue
         if name == "log" and not tied:  # its age and the place's count from each other
             continue

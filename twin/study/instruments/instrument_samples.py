@@ -118,7 +118,11 @@ def of_track(track: Track) -> Readings:
 
 
 def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool | None = None) -> Readings:
+    """What was read while the heading was: the path is as long as that, and where it ended nothing can be
+    compared."""
     by = {k: s for k, s in found.items() if s is not None}
+    if "heading" in by:
+        by = _while_read(by["heading"], by)
     if "heading" not in by or ("place" not in by and "velocity" not in by):
         raise DataError(
             f"{name}: no heading, or neither position nor velocity over ground, with "
@@ -143,6 +147,17 @@ def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool |
                 ReadingSamples(body.t, body.y[:, 2:]),
             )
     return Readings(name, by, own, speed, time)
+
+
+def _while_read(heading: ReadingSamples, by: Mapping[str, ReadingSamples]) -> dict[str, ReadingSamples]:
+    """The instruments between the first and the last reading of the heading; none with too few samples
+    there."""
+    cropped = {}
+    for kind, s in by.items():
+        there = (s.t >= heading.t[0]) & (s.t <= heading.t[-1])
+        if there.sum() >= LEAST_INSTRUMENT_SAMPLES:
+            cropped[kind] = ReadingSamples(s.t[there], s.y[there])
+    return cropped
 
 
 def _time(heading: ReadingSamples) -> float:

@@ -88,6 +88,8 @@ def _of_one(r: Readings) -> TurnedShare:
         return UNKNOWN
     x, y = x[:, :, flat], y[:, :, flat]
     power = float((np.abs(x) ** 2).sum())
+    if power == 0.0:  # a heading without noise turns it as a receiver would
+        return UNKNOWN
     share = float((x.conj() * y).real.sum()) / power
     pulls = (x.conj() * (y - share * x)).real.sum(axis=(1, 2))
     return TurnedShare(share, float(np.sqrt((pulls**2).sum())) / power)

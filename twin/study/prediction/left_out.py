@@ -101,7 +101,7 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
         np.array(usable),
         np.array([own.covariance for own in learned]),
         np.array([own.alike for own in learned]),
-        tail(np.exp(np.nanmean(np.log(sizes), axis=0))),
+        tail(np.exp(np.nanmean(np.log(sizes[:, np.isfinite(sizes).any(0)]), axis=0))),
         means,
         len(without),
         sailed(raw, middle),
@@ -143,11 +143,18 @@ def _second_moment(windows: Sequence[Windows], horizon_s: float, effective: floa
     """(8, 8) mean of e e' with the simulated noise among it; NaN for what was not read."""
     error, noise = (np.concatenate([_ends(w, horizon_s, r) for w in windows]) for r in (MODEL, STRUCTURE))
     read = np.isfinite(error).any(0)
-    own, simulated = (np.nan_to_num(x).T @ np.nan_to_num(x) / max(len(x), 1) for x in (error, noise))
+    own, simulated = map(_mean_square, (error, noise))
     S = (PRIOR * simulated + effective * own) / (PRIOR + effective)
     S[np.diag_indices(8)] += 1e-18
     S[~read], S[:, ~read] = np.nan, np.nan
     return np.asarray(S)
+
+
+def _mean_square(x: np.ndarray) -> np.ndarray:
+    """(8, 8) mean of x x' (W, 8), each variance over the windows in which it was read; an instrument that was
+    not read in all goes together with the others by so much less, which keeps it a covariance."""
+    own, read = np.nan_to_num(x), np.maximum(np.isfinite(x).sum(0), 1)
+    return np.asarray(own.T @ own / np.sqrt(np.outer(read, read)))
 
 
 class HorizonErrors(NamedTuple):

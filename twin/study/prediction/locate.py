@@ -138,18 +138,19 @@ def worst(windows: Sequence[Windows], horizon_s: float, most: int = 5) -> list[d
     owner = np.concatenate([np.full(w.start.size, i) for i, w in enumerate(windows)])
     start = np.concatenate([w.track.t[w.start] for w in windows])
     out: list[dict[str, Any]] = []
+    taken: list[int] = []
     for k in np.argsort(-np.nan_to_num(error, nan=-1.0)):
-        name = windows[owner[k]].track.name
         if len(out) == most or not np.isfinite(error[k]):
             break
-        if any(o["voyage"] == name and abs(o["start_s"] - start[k]) < horizon_s for o in out):
+        if any(owner[o] == owner[k] and abs(start[o] - start[k]) < horizon_s for o in taken):
             continue
+        taken.append(k)
         out.append(
             {
                 "start_s": float(start[k]),
                 "end_s": float(start[k] + horizon_s),
                 "error_ratio": float(error[k] / np.nanmean(error)),
-                "voyage": name,
+                "voyage": windows[owner[k]].track.name,
                 "position_m": float(errors["position"][k]),
                 "heading_deg": float(errors["heading"][k]),
             }

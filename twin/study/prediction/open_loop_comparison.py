@@ -53,7 +53,8 @@ def compare(
     if not rows:
         raise DataError(
             f"{', '.join(s.track.name for s in sailed)}: no stretch of {as_given(min(horizons_s))} s with "
-            "controls and position throughout. Give a longer voyage, or shorter horizons with --horizon."
+            "controls throughout that begins and ends where position and heading were read together. Give a "
+            "longer voyage, or shorter horizons with --horizon."
         )
     water = in_own_water(windows, models)
     longest = rows[-1]["horizon_s"]

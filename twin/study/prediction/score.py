@@ -51,8 +51,8 @@ def _of(structural: bool) -> str:
 def channels(windows: Sequence[Windows], structural: bool) -> dict[str, dict[str, float]]:
     """By column: mean error over every lead up to the longest horizon, its floor, R2 and `skill`.
 
-    r2 = 1 - SSE/SST about the mean of what was measured; skill = 1 - SSE/(SSE of going on as at the start,
-        dead reckoning).
+    r2 = 1 - SSE/SST about each voyage's mean of what was measured; skill = 1 - SSE/(SSE of going on as at the
+        start, dead reckoning).
     """
     out = {}
     for i, (reading, column) in enumerate(MEASURED.items()):
@@ -63,15 +63,23 @@ def channels(windows: Sequence[Windows], structural: bool) -> dict[str, dict[str
         noise = (
             np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
         )
-        told = np.concatenate([np.where(w.valid, w.seen[w.step, i], np.nan).ravel() for w in windows]) * k
+        told = np.concatenate(
+            [_about_its_mean(np.where(w.valid, w.seen[w.step, i], np.nan)) for w in windows]
+        )
         naive = np.concatenate([reckoned(w)[..., i].ravel() for w in windows]) * k
         out[column] = {
             "mae": float(np.nanmean(np.abs(error))),
             "noise": float(np.nanmean(np.abs(np.where(np.isfinite(error), noise, np.nan)))),
-            "r2": _explained(error, told - np.nanmean(told)),
+            "r2": _explained(error, told * k),
             "skill": _explained(error, naive),
         }
     return out
+
+
+def _about_its_mean(told: np.ndarray) -> np.ndarray:
+    """(N,) what was measured on a voyage, less its mean; NaN where it was not read."""
+    read = np.isfinite(told)
+    return np.asarray((told - told[read].mean() if read.any() else told).ravel())
 
 
 def _explained(error: np.ndarray, against: np.ndarray) -> float:

@@ -80,8 +80,11 @@ def sail(
 def turning_circle(model: Model, delta: float, rate: float | None = None) -> Circle:
     """Hard over from straight ahead at U_0; delta [rad], positive to starboard."""
     U, L = model.ship.U_0, model.ship.L_pp
-    log = sail(model, lambda _: delta, shaft_speed(model, U), 14.0 * L / U, U, rate)
     side = 1.0 if delta > 0 else -1.0
+    for lengths in (14.0, 60.0):  # a lazy ship needs more room
+        log = sail(model, lambda _: delta, shaft_speed(model, U), lengths * L / U, U, rate)
+        if side * log[-1][1][2] >= pi:
+            break
     quarter = _at_heading(log, 0.5 * pi, side)
     half = _at_heading(log, pi, side)
     _, end = log[-1]

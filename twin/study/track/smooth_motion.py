@@ -11,7 +11,7 @@ JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is th
 
 
 def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarray, np.ndarray]:
-    """The path of least jerk through the readings (N, 6), and the scatter of the readings about it (8,)."""
+    """The path of least jerk through the readings (N, 8), and the scatter of the readings about it (8,)."""
     x, y, psi, u, v, r, u_r, v_r = measured.T
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
     turn = (JERK / time**3) ** 2 * time * h**5  # what third differences of heading do by themselves: (rad)^2
