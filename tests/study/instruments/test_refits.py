@@ -8,7 +8,7 @@ import pytest
 
 from tests.thorough import thorough
 from twin.recording.voyage import Voyage
-from twin.study.instruments.findings import _early
+from twin.study.instruments import findings
 from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_samples import of_voyage
 
@@ -75,6 +75,6 @@ def test_an_age_below_zero_is_no_fault():
     fault, late = np.array(["gnss_delay", "gnss_delay", "log_scale"]), np.array([True, True, False])
     book = SimpleNamespace(fault=fault, late=late)
     of = lambda *mean: SimpleNamespace(at=np.arange(3), mean=np.array(mean))
-    assert _early(book, of(-2.5, -0.1, -0.3), "gnss_delay")
-    assert not _early(book, of(-2.5, 0.1, -0.3), "gnss_delay")
-    assert not _early(book, of(-2.5, -0.1, -0.3), "log_scale")
+    assert findings._early(book, of(-2.5, -0.1, -0.3), "gnss_delay")
+    assert not findings._early(book, of(-2.5, 0.1, -0.3), "gnss_delay")
+    assert not findings._early(book, of(-2.5, -0.1, -0.3), "log_scale")

@@ -4,7 +4,8 @@ import numpy as np
 
 from tests.study.track.test_holes import with_hole
 from twin.study.estimation.normal import Normal
-from twin.study.prediction.left_out import _mean_square, halved_at
+from twin.study.prediction import left_out
+from twin.study.prediction.left_out import halved_at
 from twin.study.track.segments import segments
 from twin.study.track.track import track
 
@@ -26,7 +27,7 @@ def test_what_was_not_read_counts_for_no_error_of_zero():
     covariance."""
     errors = np.random.default_rng(0).standard_normal((1200, 8))
     errors[400:, 6:] = np.nan
-    S = _mean_square(errors)
+    S = left_out._mean_square(errors)
     np.testing.assert_allclose(np.diag(S), 1.0, atol=0.25)
     assert np.linalg.eigvalsh(S).min() > 0.0
-    assert (_mean_square(np.full((5, 8), np.nan)) == 0.0).all()
+    assert (left_out._mean_square(np.full((5, 8), np.nan)) == 0.0).all()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.study.prediction.score import _about_its_mean, _explained
+from twin.study.prediction import score
 
 
 def test_headings_of_two_voyages_on_other_courses_are_explained_no_better_than_on_one():
@@ -11,10 +11,10 @@ def test_headings_of_two_voyages_on_other_courses_are_explained_no_better_than_o
     rng = np.random.default_rng(1)
     seen, error = rng.standard_normal((2, 50)), 0.3 * rng.standard_normal(100)
     told = [
-        np.concatenate([_about_its_mean(s + c) for s, c in zip(seen, courses, strict=True)])
+        np.concatenate([score._about_its_mean(s + c) for s, c in zip(seen, courses, strict=True)])
         for courses in ((5, 355), (5, 5))
     ]
-    apart, alike = (_explained(error, t) for t in told)
+    apart, alike = (score._explained(error, t) for t in told)
     assert abs(apart - alike) < 1e-9
     assert 0.8 < alike < 1.0
-    assert np.isnan(_about_its_mean(np.full(3, np.nan))).all()
+    assert np.isnan(score._about_its_mean(np.full(3, np.nan))).all()
