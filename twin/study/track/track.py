@@ -34,12 +34,12 @@ WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
     ("bank_port", "bank_distance_port_m", 0.0),
     ("bank_starboard", "bank_distance_starboard_m", 0.0),
 )
+TRUE_WIND = ("true_wind_speed_mps", "true_wind_direction_deg")
+APPARENT_WIND = ("apparent_wind_speed_mps", "apparent_wind_angle_deg")
 GRIDDED = (  # what is put on the grid whole: weather
     *(channel for _, channel, _ in WEATHER_CHANNELS),
-    "true_wind_speed_mps",
-    "true_wind_direction_deg",
-    "apparent_wind_speed_mps",
-    "apparent_wind_angle_deg",
+    *TRUE_WIND,
+    *APPARENT_WIND,
 )
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail its own length
@@ -278,14 +278,14 @@ def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray, rolled: int)
 
     for name, channel, turn in WEATHER_CHANNELS:
         put(name, channel, turn)
-    if grid.has("true_wind_speed_mps", "true_wind_direction_deg"):
-        put("wind_speed", "true_wind_speed_mps")
-        put("wind_to", "true_wind_direction_deg", np.pi)
-    elif grid.has("apparent_wind_speed_mps", "apparent_wind_angle_deg"):
-        speed, angle = (
-            _fill(grid.si("apparent_wind_speed_mps")),
-            _fill(grid.si("apparent_wind_angle_deg")) + np.pi,
-        )
+    true, apparent = (
+        int((np.isfinite(grid[a]) & np.isfinite(grid[b])).sum()) for a, b in (TRUE_WIND, APPARENT_WIND)
+    )
+    if true >= max(apparent, 1):
+        put("wind_speed", TRUE_WIND[0])
+        put("wind_to", TRUE_WIND[1], np.pi)
+    elif apparent:
+        speed, angle = _fill(grid.si(APPARENT_WIND[0])), _fill(grid.si(APPARENT_WIND[1])) + np.pi
         ahead, aside = speed * np.cos(angle) + state[:, 3], speed * np.sin(angle) + state[:, 4]
         out["wind_speed"], out["wind_to"] = np.hypot(ahead, aside), np.arctan2(aside, ahead) + state[:, 2]
     if "phi" in out and len(grid) > 1:
