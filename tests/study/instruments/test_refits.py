@@ -70,6 +70,15 @@ def test_what_was_read_after_the_heading_was_lost_is_compared_with_nothing():
     assert "place" in read.by and "log" not in read.by
 
 
+def test_the_usual_speed_by_place_alone_does_not_count_the_noise_of_the_place():
+    """Test: 7 m/s, places to 0.5 m, at 1 Hz, and shown to 5 m. Expected: 7 m/s."""
+    sailed = hardly_turning(20.0)
+    alone = {name: x for name, x in sailed.columns.items() if "velocity_mps" not in name}
+    noise = np.random.default_rng(1).normal(0.0, 5.0, (2, sailed.time_s.size))
+    alone |= {c: alone[c] + e for c, e in zip(("north_m", "east_m"), noise, strict=True)}
+    assert of_voyage(replace(sailed, columns=alone)).speed == pytest.approx(7.0, rel=0.1)
+
+
 def test_an_age_below_zero_is_no_fault():
     """No instrument is early; the readings of a voyage on one course may ask for that all the same."""
     fault, late = np.array(["gnss_delay", "gnss_delay", "log_scale"]), np.array([True, True, False])

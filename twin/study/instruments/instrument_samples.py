@@ -131,7 +131,7 @@ def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool |
         )
     time = _time(by["heading"])
     body = by.pop("body", None)
-    speed = _speed(by)
+    speed = _speed(by, time)
     if "air" in by:
         air = by.pop("air")
         by["wind"] = ReadingSamples(
@@ -182,9 +182,12 @@ def _scatter(y: np.ndarray) -> float:
     return 1.4826 * float(np.median(np.abs(np.diff(y, 3)))) / np.sqrt(20.0) if y.size > 3 else 0.0
 
 
-def _speed(by: Mapping[str, ReadingSamples]) -> float:
+def _speed(by: Mapping[str, ReadingSamples], time: float) -> float:
+    """Usual speed [m/s]: by velocity, else from mean place to mean place, as long as the ship turns alike
+    (`time` [s]), lest the place's noise be sailed too."""
     if "velocity" in by:
         return max(float(np.median(np.hypot(*by["velocity"].y.T))), 1e-3)
-    p = by["place"]
+    p = by["place"].thinned(0.5 * time)
+    p = p if p.t.size > 2 else by["place"]
     sailed = float(np.hypot(*np.diff(p.y, axis=0).T).sum())
     return max(sailed / float(np.ptp(p.t)), 1e-3)
