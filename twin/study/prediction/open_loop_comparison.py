@@ -9,7 +9,7 @@ from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.estimation.start import waves_on
+from twin.study.estimation.start import BRIDGE_S, waves_on
 from twin.study.prediction import locate, score
 from twin.study.prediction.comparison_water import KEYS, in_own_water, in_words, stream_at_end, with_own_water
 from twin.study.prediction.expected import with_expected_errors
@@ -54,7 +54,8 @@ def compare(
         raise DataError(
             f"{', '.join(s.track.name for s in sailed)}: no stretch of {as_given(min(horizons_s))} s with "
             "controls throughout that begins and ends where position and heading were read together. Give a "
-            "longer voyage, or shorter horizons with --horizon."
+            "longer voyage, or shorter horizons with --horizon, or record both at least every "
+            f"{as_given(BRIDGE_S)} s."
         )
     water = in_own_water(windows, models)
     longest = rows[-1]["horizon_s"]
