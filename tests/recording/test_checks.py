@@ -118,14 +118,11 @@ TRAPS = {
     ),
     "wind in knots": ("wind", times(AIR, KNOTS), "knots"),
     "speed log in knots": ("speed_log", times(LOG, KNOTS), "kn"),
-    "rounded time stamps that repeat": (
-        "time_stamps",
-        lambda c: c | {"time_s": np.round(c["time_s"])},
-        "rounded",
-    ),
+    "rounded time stamps": ("time_stamps", lambda c: c | {"time_s": np.round(c["time_s"])}, "rounded"),
     "a gap": ("time_gaps", without_rows(300.0, 340.0), "40"),
     "a hole in the heading": ("missing_samples", blank(HEADING, 300.0, 330.0), "has a hole"),
     "a tail without rudder": ("missing_samples", blank(RUDDER, 700.0, 1e9), "ends early"),
+    "a tail without wind, held": ("missing_samples", blank(WIND, 700.0, 1e9), "what was read last"),
     "a heading that hangs": ("frozen", stuck(HEADING, 100.0, 160.0), "heading_true_north_deg stays"),
     "a position that hangs": ("frozen", stuck("north_m", 100.0, 130.0), "north_m stays"),
     "a speed that hangs at zero": (

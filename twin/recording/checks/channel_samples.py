@@ -30,7 +30,10 @@ def missing_samples(view: VoyageView) -> Check:
     absent = ", ".join(name for name in v.absent() if not _follows(v, name)) or "nothing"
     if found:
         return doubtful(
-            "missing_samples", f"{'; '.join(found)}. Nothing is filled in there. Absent altogether: {absent}."
+            "missing_samples",
+            f"{'; '.join(found)}. Nothing is filled in there; of wind, waves, depth, banks, draught and roll "
+            "the study takes what was read last or next, and a line between the two. Absent altogether: "
+            f"{absent}.",
         )
     return good(
         "missing_samples",
