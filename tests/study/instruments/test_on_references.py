@@ -106,13 +106,13 @@ def test_what_the_references_show_no_more_of_than_sound_instruments_from_day_to_
 def test_what_only_one_reference_shows_is_not_the_ships(days):
     found = asked(smoothed(days[0], 3.0), *days[1:])
     assert found.record.numbers["smoothing"].between > 0.5
-    assert established(found, 100.0) == []
+    assert established(found) == []
 
 
 @pytest.mark.parametrize("voyages", [1, 2])
 def test_fewer_than_three_references_establish_nothing(days, voyages):
     found = asked(*(smoothed(d, 3.0) for d in days[:voyages]))
-    assert "smoothing" in found.record.faults and established(found, 100.0) == []
+    assert "smoothing" in found.record.faults and established(found) == []
 
 
 @thorough

@@ -19,7 +19,6 @@ from twin.recording.voyage import Voyage
 from twin.study.calibration.usual import LASTING_SE
 from twin.study.instruments.corrections import effects_of_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
-from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
 from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
@@ -51,7 +50,7 @@ def own_instruments(fitted: Sequence[Sailed], ship: Ship) -> OwnInstruments:
         return OwnInstruments(_without_record(ship), None, {})
     written: dict[str, dict[str, dict[str, Any]]] = {}
     known = effects_of_readings()
-    for fault in established(asked, float(ship.L_pp)):
+    for fault in established(asked):
         names = [UNKNOWNS[i].name for i in members(fault)]
         usual = {n: asked.record.numbers[n] for n in names if n in asked.record.numbers and n in known}
         told = {n: (u.value, u.next_sd) for n, u in usual.items()}
@@ -71,17 +70,16 @@ def own_instruments(fitted: Sequence[Sailed], ship: Ship) -> OwnInstruments:
     return OwnInstruments(after, asked.record, written)
 
 
-def established(asked: OnReferences, length_m: float) -> list[str]:
+def established(asked: OnReferences) -> list[str]:
     """Faults that a ship file may hold as the ship's own: seen on all references together, told by three at
     least, clear of none on the next voyage too, by the scatter between them, and seen beside what sound
     instruments show otherwise from day to day. For what no formula here has of how this ship drifts may look
-    like a fault, and is the same on each of its voyages: no scatter between them tells of it. `length_m` of
-    the ship."""
+    like a fault, and is the same on each of its voyages: no scatter between them tells of it."""
     clear = [f for f, far in asked.clear.items() if far > LASTING_SE and _of_kinematics(f)]
     clear = [f for f in clear if _voyages_known(asked, f) >= LEAST_REFERENCES]
     if not clear:
         return []
-    seen = estimate(asked.found.readings, length_m, varying=True).distinct
+    seen = asked.whole.varying().estimate().distinct
     return [f for f in clear if f in seen]
 
 

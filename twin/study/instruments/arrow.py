@@ -49,11 +49,9 @@ class ArrowReduced:
 def reduce(blocks: Sequence[Block], sd: dict[str, float], fast: int) -> ArrowReduced:
     """Normal equations of all blocks, each with its scatter, and the states (`fast` of them in a band) taken
     out of them."""
-    J, G, P = (
-        vstack([b.J for b in blocks], "csr"),
-        np.concatenate([b.G for b in blocks]),
-        blocks[0].G.shape[1],
-    )
+    J, whole = vstack([b.J for b in blocks], "csr"), np.concatenate([b.G for b in blocks])
+    at = np.flatnonzero(whole.any(axis=0))  # the others change nothing
+    G, P = whole[:, at], whole.shape[1]
     w = np.concatenate([b.weight / sd[b.name] ** 2 for b in blocks])
     scaled, r = J.copy(), np.concatenate([b.r for b in blocks])
     scaled.data *= np.repeat(w, np.diff(J.indptr))
@@ -61,9 +59,11 @@ def reduce(blocks: Sequence[Block], sd: dict[str, float], fast: int) -> ArrowRed
     H_pp, g_p = G.T @ (w[:, None] * G), G.T @ (w * r)
     solve, log_det = _solver((scaled.T @ J).tocsr(), fast)
     solved = solve(np.column_stack([cross, g_s]))
-    inner, mean = solved[:, :P], solved[:, P]
-    A = H_pp - cross.T @ inner
-    return ArrowReduced(0.5 * (A + A.T), g_p - cross.T @ mean, log_det, solve, inner, mean)
+    A, g, inner, mean = np.zeros((P, P)), np.zeros(P), np.zeros((J.shape[1], P)), solved[:, -1]
+    inner[:, at] = solved[:, :-1]
+    A[np.ix_(at, at)] = H_pp - cross.T @ inner[:, at]
+    g[at] = g_p - cross.T @ mean
+    return ArrowReduced(0.5 * (A + A.T), g, log_det, solve, inner, mean)
 
 
 def _solver(H: csr_array, fast: int) -> tuple[Callable[[np.ndarray], np.ndarray], float]:

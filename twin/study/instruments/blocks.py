@@ -52,14 +52,15 @@ SENSES: dict[str, Callable[[Problem, Theta, Rows | None], np.ndarray]] = {
 }
 
 
-def blocks(p: Problem, theta: Theta) -> list[Block]:
-    """All readings and priors about the states as they are."""
+def blocks(p: Problem, theta: Theta, free: np.ndarray) -> list[Block]:
+    """All readings and priors about the states as they are, with their slopes by the numbers that are `free`
+    (P,)."""
     out = []
     with remembering(p):
         for name, sense in SENSES.items():
             if name in p.by:
-                out.append(_block(p, theta, name, sense, p.by[name].y.T.ravel()))
-        drifts = _block(p, theta, "drift", drift, np.zeros(p.grid.size))
+                out.append(_block(p, theta, free, name, sense, p.by[name].y.T.ravel()))
+        drifts = _block(p, theta, free, "drift", drift, np.zeros(p.grid.size))
         out.append(_whitened(p, drifts, has_way_ahead(p, theta)))
     return out + _priors(p)
 
@@ -94,6 +95,7 @@ def _whitened(p: Problem, b: Block, ahead: np.ndarray) -> Block:
 def _block(
     p: Problem,
     theta: Theta,
+    free: np.ndarray,
     name: str,
     sense: Callable[[Problem, Theta, Rows | None], np.ndarray],
     y: np.ndarray,
@@ -102,7 +104,7 @@ def _block(
     here = sense(p, theta, rows)
     r = y - here
     G = np.zeros((y.size, len(UNKNOWNS)))
-    for unknown in AFFECT[name]:
+    for unknown in (n for n in AFFECT[name] if free[INDEX[n]]):
         wanted = set(WANTS.get(unknown, ()))
         if wanted and "log aside" not in p.by and not wanted & {*p.by, *(["own"] if p.own else [])}:
             continue

@@ -2,6 +2,7 @@
 known from them."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,7 +18,7 @@ from twin.study.instruments.findings import (
     said,
 )
 from twin.study.instruments.instrument_samples import Readings, of_track, of_voyage
-from twin.study.instruments.kinematic_fit import KinematicFit, columns, fit
+from twin.study.instruments.kinematic_fit import KinematicFit, columns, fit, varying_with_the_day
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.refits import Refits, begun_anew
 from twin.study.instruments.select import Weighed, WeighedSets
@@ -50,52 +51,83 @@ def estimate(
     its velocity by an attitude of its own, if known; else what all voyages say together. `varying`: whether
     what sound instruments show otherwise from day to day stands beside what the readings leave open: asked of
     voyages with no others of the same ship to compare them with."""
+    whole = fit_whole(voyages, length_m, progress, clock, own)
+    return (whole.varying() if varying else whole).estimate(progress)
+
+
+@dataclass(frozen=True)
+class WholeFit:
+    """All numbers of these voyages fitted at once, before it is asked which faults are there. `prompt`: the
+    ages that are none by definition; `velocity_by`: what surely turned the velocity ("": not known);
+    `of_day`: whether what varies from day to day stands beside what the readings leave open."""
+
+    readings: tuple[Readings, ...]
+    problems: tuple[Problem, ...]
+    velocity_by: str
+    found: KinematicFit
+    prompt: tuple[str, ...]
+    refits: Refits
+    of_day: bool = False
+
+    def varying(self) -> "WholeFit":
+        """With what sound instruments show otherwise from day to day."""
+        return replace(self, found=varying_with_the_day(self.found, self.problems), of_day=True)
+
+    def estimate(self, progress: Progress = silent) -> Instruments:
+        """Which faults are there, and every number beside them."""
+        problems, found, refitted = [p.as_it_is() for p in self.problems], self.found, dict[str, float]()
+        while True:
+            refuted = [f for f, factor in refitted.items() if factor <= FAULT_BAYES_FACTOR]
+            found, best = self._settled(problems, found, refuted, progress)
+            answer = said(self.readings, problems, found, self.prompt, self.velocity_by, refitted)
+            asked = [f for f in answer.faults if f not in refitted]
+            if not asked:
+                return answer
+            progress("fitting without " + ", ".join(asked))
+            factors = self.refits.bayes_factors(best.faults, answer.faults)
+            weakest = min(factors, key=lambda f: factors[f])
+            if factors[weakest] > FAULT_BAYES_FACTOR:
+                refitted |= factors
+            else:
+                refitted[weakest], problems = factors[weakest], begun_anew(problems)
+
+    def _settled(
+        self,
+        problems: Sequence[Problem],
+        found: KinematicFit,
+        refuted: Sequence[str],
+        progress: Progress,
+    ) -> tuple[KinematicFit, Weighed]:
+        """The fit of the likeliest set of faults, none of which was refuted, and the set: chosen about one
+        fit, fitted, and chosen again until it stays."""
+        chosen: tuple[str, ...] | None = None
+        for _ in range(ROUNDS):
+            best = WeighedSets(found, self.prompt, refuted).likeliest()
+            if best.faults == chosen:
+                break
+            chosen = best.faults
+            progress("fitting " + (", ".join(chosen) or "no fault"))
+            names = [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)]
+            found = fit(problems, names, _start(found, best))
+            if self.of_day:
+                found = varying_with_the_day(found, problems)
+        return found, best
+
+
+def fit_whole(
+    voyages: Sequence[Voyage | Track | Readings],
+    length_m: float | None = None,
+    progress: Progress = silent,
+    clock: str | None = None,
+    own: bool | None = None,
+) -> WholeFit:
+    """All numbers of these voyages at once. Arguments: as of `estimate`."""
     readings = [_readings(v) for v in voyages]
-    lengths = [length_m or r.length for r in readings]
-    problems, velocity_by = _problems(readings, lengths, own, progress)
+    problems, velocity_by = _problems(readings, [length_m or r.length for r in readings], own, progress)
     progress("fitting all numbers at once")
-    found, prompt = _whole(problems, clock, varying)
-    refits, refitted = Refits(problems, found.theta), dict[str, float]()
-    while True:
-        refuted = [f for f, factor in refitted.items() if factor <= FAULT_BAYES_FACTOR]
-        found, best = _settled(problems, found, prompt, refuted, varying, progress)
-        answer = said(readings, problems, found, prompt, velocity_by, refitted)
-        asked = [f for f in answer.faults if f not in refitted]
-        if not asked:
-            return answer
-        progress("fitting without " + ", ".join(asked))
-        factors = refits.bayes_factors(best.faults, answer.faults)
-        weakest = min(factors, key=lambda f: factors[f])
-        if factors[weakest] > FAULT_BAYES_FACTOR:
-            refitted |= factors
-        else:
-            refitted[weakest], problems = factors[weakest], begun_anew(problems)
-
-
-def _settled(
-    problems: Sequence[Problem],
-    found: KinematicFit,
-    prompt: Sequence[str],
-    refuted: Sequence[str],
-    varying: bool,
-    progress: Progress,
-) -> tuple[KinematicFit, Weighed]:
-    """The fit of the likeliest set of faults, none of which was refuted, and the set: chosen about one fit,
-    fitted, and chosen again until it stays."""
-    chosen: tuple[str, ...] | None = None
-    for _ in range(ROUNDS):
-        best = WeighedSets(found, prompt, refuted).likeliest()
-        if best.faults == chosen:
-            break
-        chosen = best.faults
-        progress("fitting " + (", ".join(chosen) or "no fault"))
-        found = fit(
-            problems,
-            [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)],
-            _start(found, best),
-            varying=varying,
-        )
-    return found, best
+    found, prompt = _whole(problems, clock)
+    refits = Refits(problems, found.theta)
+    return WholeFit(tuple(readings), tuple(problems), velocity_by, found, prompt, refits)
 
 
 def _readings(v: Voyage | Track | Readings) -> Readings:
@@ -139,9 +171,7 @@ def _likelier_itself(r: Readings, length: float, progress: Progress) -> float:
     return told[1] - told[0]
 
 
-def _whole(
-    problems: Sequence[Problem], clock: str | None = None, varying: bool = False
-) -> tuple[KinematicFit, tuple[str, ...]]:
+def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, tuple[str, ...]]:
     """All numbers at once but for the ages that are none, and which: a clock of all instruments together
     shows nowhere; none is early, so the earliest is prompt. Where nothing ties compass and gyro to the place
     there are two such clocks: theirs, and that of place and log."""
@@ -159,7 +189,7 @@ def _whole(
             earliest = clock
         theta[:, [INDEX[n] for n in ages]] -= value[earliest]
         prompt.append(earliest)
-    return fit(problems, [n for n in names if n not in prompt], theta, varying=varying), tuple(prompt)
+    return fit(problems, [n for n in names if n not in prompt], theta), tuple(prompt)
 
 
 def _start(found: KinematicFit, best: Weighed) -> np.ndarray:

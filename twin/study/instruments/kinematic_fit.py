@@ -77,11 +77,10 @@ def fit(
     names: Sequence[str],
     theta: np.ndarray | None = None,
     rounds: int = ROUNDS,
-    varying: bool = False,
 ) -> KinematicFit:
     """All voyages with these numbers free and the others at nothing. `theta` (V, P): where the numbers start,
-    in their own units (None: at nothing); `rounds`: Gauss-Newton rounds at most. `varying`: whether A and g
-    hold what varies from day to day. The problems' states and scatters are left where they end."""
+    in their own units (None: at nothing); `rounds`: Gauss-Newton rounds at most. The problems' states and
+    scatters are left where they end."""
     V = len(problems)
     free = opened(names, V)
     at = np.zeros((V, P)) if theta is None else theta.copy()
@@ -90,7 +89,7 @@ def fit(
     width = _widths(problems)
     rng = np.random.default_rng(1)
     for done in range(1, rounds + 1):
-        A, g, found, every = _normal(problems, at)
+        A, g, found, every = _normal(problems, at, free)
         covariance, step = _step(A, g, width, free, _row(at))
         if _stepped(problems, found, at, step, width):
             _scatters(problems, every, found, covariance, rng)
@@ -98,12 +97,17 @@ def fit(
                 p.remember()
         if done > 3 and np.all(np.abs(step[free]) < CLOSE * np.sqrt(np.diag(covariance)[free])):
             break
-    A, g, found, every = _normal(problems, at, True)
+    A, g, found, every = _normal(problems, at)
     score = _score(problems, every, found, A, width, free, _row(at))
-    if varying:
-        found = [from_day_to_day(red, p.widths) for red, p in zip(found, problems, strict=True)]
-        A, g = _together(problems, found)
     return KinematicFit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score)
+
+
+def varying_with_the_day(found: KinematicFit, problems: Sequence[Problem]) -> KinematicFit:
+    """The same fit of these problems, with what sound instruments show otherwise from day to day beside what
+    the readings leave open."""
+    reduced = tuple(from_day_to_day(red, p.widths) for red, p in zip(found.reduced, problems, strict=True))
+    A, g = _together(problems, reduced)
+    return replace(found, A=A, g=g, reduced=reduced)
 
 
 def from_day_to_day(red: arrow.ArrowReduced, widths: np.ndarray) -> arrow.ArrowReduced:
@@ -130,13 +134,16 @@ def _row(theta: np.ndarray) -> np.ndarray:
 
 
 def _normal(
-    problems: Sequence[Problem], theta: np.ndarray, sober: bool = False
+    problems: Sequence[Problem], theta: np.ndarray, free: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, list[arrow.ArrowReduced], list[list[arrow.Block]]]:
-    """The normal equations of all voyages; `sober`: with readings that err together told for what they are
-    worth (the paths are fitted without: a bad fit errs together too, and would be believed)."""
-    every = [blocks(p, at) for p, at in zip(problems, theta, strict=True)]
+    """The normal equations of all voyages. `free` (Q,): only of these numbers, to step to; None: of all, with
+    readings that err together told for what they are worth (the paths are fitted without: a bad fit errs
+    together too, and would be believed)."""
+    mine = [np.ones(P, bool) if free is None else free[columns(v)] for v in range(len(problems))]
+    every = [blocks(p, at, own) for p, at, own in zip(problems, theta, mine, strict=True)]
     found = [
-        arrow.reduce(bs, p.worth() if sober else p.sd, p.fast) for bs, p in zip(every, problems, strict=True)
+        arrow.reduce(bs, p.worth() if free is None else p.sd, p.fast)
+        for bs, p in zip(every, problems, strict=True)
     ]
     return *_together(problems, found), found, every
 

@@ -18,7 +18,7 @@ from twin.study.estimation.of_effect import NOTE
 from twin.study.estimation.rarity import deviations
 from twin.study.instruments.by_voyage import equations, tellable
 from twin.study.instruments.findings import CLOCKS, Instruments
-from twin.study.instruments.instrument_estimate import estimate
+from twin.study.instruments.instrument_estimate import WholeFit, fit_whole
 from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS
 from twin.study.reference.between import scattered, ship_of
@@ -123,11 +123,13 @@ class OnReferences:
     record: KinematicRecord
     clear: Mapping[str, float]
     found: Instruments
+    whole: WholeFit
 
 
 def on_references(readings: Sequence[Readings], length_m: float) -> OnReferences:
     """Of reference voyages; DataError where one of them lacks heading, or position and velocity."""
-    found = estimate(readings, length_m)
+    whole = fit_whole(readings, length_m)
+    found = whole.estimate()
     told = [f for f in found.log_bayes_factors if f not in (*ALWAYS, found.clock)]
     numbers: dict[str, KinematicUsual] = {}
     clear: dict[str, float] = {}
@@ -138,7 +140,7 @@ def on_references(readings: Sequence[Readings], length_m: float) -> OnReferences
         numbers |= usual
         clear |= {f: d for f, d in far.items() if f in found.distinct}
     record = KinematicRecord(found.clock, found.faults, all(found.own), numbers, found.velocity_by)
-    return OnReferences(record, clear, found)
+    return OnReferences(record, clear, found, whole)
 
 
 def _of_set(

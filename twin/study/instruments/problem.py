@@ -7,6 +7,7 @@ systems, IROS]. Priors, each with a size that the data choose: third derivative 
 and wind, and the ship's speed aside through the water, which follows its rate of turn and is else a scatter
 about nothing."""
 
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -206,6 +207,12 @@ class Problem:
         }
         self.least |= {"twist": 3e-3 / T**3, "jerk": 1e-2 * U / T**2}
         self.widths = widths(U, self.length, T)
+
+    def as_it_is(self) -> "Problem":
+        """The same voyage with the path and the scatters as they are now, which then go their own way."""
+        other = copy(self)
+        other.sd, other.lasts = dict(self.sd), dict(self.lasts)
+        return other
 
     def worth(self) -> dict[str, float]:
         """Each scatter as large as the readings' own errors, that err together, make it."""
