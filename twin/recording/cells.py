@@ -9,7 +9,7 @@ import numpy as np
 from twin.errors import DataError
 from twin.recording.frames import from_ddmm
 from twin.recording.mapping import QUATERNIONS, Column, Key, measured_as, target
-from twin.recording.resample import continuous, wrapped
+from twin.recording.resample import USUAL_WAITS, continuous, wrapped
 from twin.recording.samples import spikes
 from twin.recording.table import Table
 from twin.recording.units import factor
@@ -24,7 +24,6 @@ UNIT_MARKS = re.compile(
 HEMISPHERES = {word: word[0] for word in ("N", "S", "E", "W", "NORTH", "SOUTH", "EAST", "WEST")}
 NEGATIVE = frozenset("SWsw-")
 ROUNDING_DEG = 1e-9  # of a heading: a step of Newton's that is no more was the last
-USUAL_WAITS = 1.5  # usual times between two samples, up to which a slow log's wait is no hole
 PLAIN_UNITS = (None, "ddmm", "dms", *QUATERNIONS)
 
 

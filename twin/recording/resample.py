@@ -2,6 +2,8 @@
 
 import numpy as np
 
+USUAL_WAITS = 1.5  # usual times between two samples, up to which the wait of a slow log is no hole
+
 
 def continuous(values: np.ndarray, period: float) -> np.ndarray:
     """An angle without its jumps (period > 0): each sample on the turn nearest to the last one measured.
@@ -40,7 +42,7 @@ def beside(
     time_s: np.ndarray, values: np.ndarray, rows: np.ndarray, max_gap_s: float, period: float = 0.0
 ) -> np.ndarray:
     """`values` with a number in these `rows` (bool) too, from a line between its own neighbours no more than
-    `max_gap_s` apart.
+    `max_gap_s` apart (or USUAL_WAITS, if that is longer).
 
     For two quantities that belong together and were logged in rows of their own; where both stand in one
     row nothing is made up. All (N,), in the values' own unit."""
@@ -51,7 +53,8 @@ def beside(
     order = np.argsort(time_s[there], kind="stable")
     t, x = time_s[there][order], continuous(values[there][order], period)
     out = np.array(values, dtype=float)
-    near = reachable(time_s[fill], t, max_gap_s, 0.0, 0.0)
+    usual_s = float(np.median(np.diff(t))) if t.size > 1 else 0.0
+    near = reachable(time_s[fill], t, max(max_gap_s, USUAL_WAITS * usual_s), 0.0, 0.0)
     out[fill] = np.where(near, np.interp(time_s[fill], t, x), np.nan)
     return out
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.live.signals.channels import of_actuators
+from twin.live.signals.channels import BY_NAME, of_actuators
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 
@@ -48,10 +48,11 @@ class VoyageView:
 
     @cached_property
     def even(self) -> Voyage:
-        """The voyage on an even grid of its own step, or a coarser one when it is long."""
+        """The voyage on an even grid of its own step, or a coarser one when it is long, or when heading or
+        place come more seldom than a line is drawn between two of them."""
         v = self.voyage
-        step = max(v.sailed_s / max(len(v) - 1, 1), v.sailed_s / MOST_ROWS, 1e-6)
-        return v.on_grid(step)
+        waits = (_usual_wait_s(v, name) for name in ("heading_true_north_deg", "north_m"))
+        return v.on_grid(max(v.sailed_s / max(len(v) - 1, 1), v.sailed_s / MOST_ROWS, 1e-6, *waits))
 
     @cached_property
     def step_s(self) -> float:
@@ -119,6 +120,13 @@ class VoyageView:
         """(W,) integral of a rate over each window (trapezes); NaN where a sample is missing. `rate` (N,);
         `first`, `last` (W,); in the unit of the rate times s."""
         return RunningSum.of(rate, self.step_s).over(first, last)
+
+
+def _usual_wait_s(v: Voyage, name: str) -> float:
+    """The usual time between two samples of a channel [s], if that is longer than one may be old; else 0."""
+    at = np.flatnonzero(np.isfinite(v[name])) if v.has(name) else np.empty(0, int)
+    wait = float(np.median(np.diff(v.time_s[at]))) if at.size > 2 else 0.0
+    return wait if wait > BY_NAME[name].stale_s else 0.0
 
 
 def _from_none(steps: np.ndarray) -> np.ndarray:

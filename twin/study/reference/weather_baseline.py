@@ -35,7 +35,7 @@ def strengths(
 
 def as_usual(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, ...]:
     """The weather that is felt now, and no harder than it was then."""
-    return tuple(name for name, strength in now.items() if FAINT < strength <= HARDER * then.get(name, 0.0))
+    return tuple(name for name, strength in now.items() if 0.0 < strength <= HARDER * then.get(name, 0.0))
 
 
 def _strength(track: Track, model: Model, effect: type[Effect]) -> float | None:
