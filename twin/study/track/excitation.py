@@ -5,6 +5,7 @@ Asked of what helm and engine did, never of how much the noise would let one see
 autopilot's corrections to any precision, and what they seem to say is the model's own error."""
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from twin.physics.ship import Ship
 from twin.study.track.track import Track
@@ -22,13 +23,13 @@ def manoeuvred(track: Track, ship: Ship) -> bool:
 
 
 def _turned(track: Track, ship: Ship) -> float:
-    """The greatest change of heading over STRETCH lengths [rad]."""
+    """The greatest change of heading within STRETCH lengths [rad]."""
     steps = max(1, int(STRETCH * float(ship.scale("time")) / track.h))
-    psi, whole = track.state[:, 2], track.whole
-    if len(track) <= steps:
-        return float(np.ptp(psi[whole])) if whole.any() else 0.0
-    change = np.abs(psi[steps:] - psi[:-steps])[whole[steps:] & whole[:-steps]]
-    return float(change.max(initial=0.0))
+    low, high = (
+        sliding_window_view(np.where(track.whole, track.state[:, 2], left_out), min(steps + 1, len(track)))
+        for left_out in (np.inf, -np.inf)
+    )
+    return float((high.max(1) - low.min(1)).max(initial=0.0))
 
 
 def _throttled(track: Track) -> float:
