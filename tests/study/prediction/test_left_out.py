@@ -1,8 +1,11 @@
 """Which part of a single voyage is predicted by which half of it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tests.study.track.test_holes import with_hole
+from twin.physics.model import Model
 from twin.study.estimation.normal import Normal
 from twin.study.prediction import left_out
 from twin.study.prediction.left_out import halved_at
@@ -31,3 +34,17 @@ def test_what_was_not_read_counts_for_no_error_of_zero():
     np.testing.assert_allclose(np.diag(S), 1.0, atol=0.25)
     assert np.linalg.eigvalsh(S).min() > 0.0
     assert (left_out._mean_square(np.full((5, 8), np.nan)) == 0.0).all()
+
+
+def test_a_voyage_of_which_nothing_can_be_predicted_changes_nothing_of_what_the_others_scatter_by(
+    make, kvlcc2
+):
+    """Test: two voyages of half an hour, and a third without rudder and shaft. Expected: the tail of the two
+    alone."""
+    told = [track(make(seconds=1800.0, seed=s), kvlcc2) for s in (1, 2)]
+    blind = replace(told[0], whole=np.zeros_like(told[0].whole))
+    of_two, of_three = (
+        left_out.path_error(Model.of(kvlcc2), tracks, [Model.of(kvlcc2)] * len(tracks))
+        for tracks in (told, [*told, blind])
+    )
+    assert of_three.tail == of_two.tail > 2.0
