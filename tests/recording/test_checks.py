@@ -295,21 +295,3 @@ def test_a_hole_in_a_log_of_messages_is_found_all_the_same(sail):
     keep = (log["time_s"] < 100.0) | (log["time_s"] > 140.0)
     found = answers({name: values[keep] for name, values in log.items()})
     assert not found["time_gaps"].ok and "40" in found["time_gaps"].text
-
-
-@pytest.mark.parametrize("behind_s", [0.0, 5.0], ids=["in the same rows", "in rows of their own"])
-def test_a_ship_whose_place_and_heading_come_every_ten_seconds_makes_way(sail, behind_s, recwarn):
-    """Test: place every 10 s, heading every 10 s, rudder and shaft every second; nothing else was recorded."""
-    full = sail(noise=0.0)
-    t, columns = full["time_s"], {}
-    for names, rows in (
-        (("north_m", "east_m"), np.mod(t + 1e-6, 10.0) < 1e-3),
-        ((HEADING,), np.mod(t - behind_s + 1e-6, 10.0) < 1e-3),
-        ((RUDDER, TURNS), np.mod(t + 1e-6, 1.0) < 1e-3),
-    ):
-        columns |= {name: np.where(rows, full[name], np.nan) for name in names}
-    said = answers({"time_s": t} | columns)
-    assert said["duration"].ok
-    assert float(said["duration"].text.split(", ")[1].split()[0]) == pytest.approx(6230.0, rel=0.05)
-    assert said["propeller_rate"].informative and said["rudder_sign"].informative
-    assert not recwarn.list

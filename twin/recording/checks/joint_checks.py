@@ -3,7 +3,10 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from twin.recording.checks.check_result import Check, doubtful
+import numpy as np
+
+from twin.num import as_given
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful
 from twin.recording.checks.other_ship import as_its_own, other_ship
 from twin.recording.checks.propeller import with_believed_turns
 from twin.recording.checks.relations import offs
@@ -13,6 +16,8 @@ from twin.recording.checks.undo import HEADING, measured, remade
 from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.voyage import Voyage
 
+# from one sample to the next [rad]: sums of the rate of turn over a zigzag of 25 deg are then off by 3 %
+MOST_TURNED = np.radians(15.0)
 MAX_MISTAKES = 3  # mistakes that are told one after the other
 OF_MOTION = (
     "velocity_frame",
@@ -44,6 +49,8 @@ Checks = Sequence[Callable[[VoyageView], Check]]
 
 def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
     """The answers in the table's order."""
+    if view.turned_between > MOST_TURNED:
+        return [seldom(check.__name__, view) or check(view) for check in checks]
     answers = {check.__name__: check(view) for check in checks}
     named, without = named_mistakes(view, answers)
     if without is not view:
@@ -55,6 +62,17 @@ def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
     if any(f"{channel} stays" in answers["frozen"].text for channel in MOVES):
         broken.add(FROZEN_CHANNEL)
     return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
+
+
+def seldom(name: str, view: VoyageView) -> Check | None:
+    """The answer of a check of motion where the ship turns too far between two samples."""
+    if name not in (*OF_MOTION, "heading_steps"):
+        return None
+    return cannot_tell(
+        name,
+        f"the ship turns by {np.degrees(view.turned_between):.0f} deg and more from one sample to the next, "
+        f"{as_given(view.step_s, 3)} s later. Record place and heading more often.",
+    )
 
 
 def of_this_ship(answers: dict[str, Check], view: VoyageView) -> dict[str, Check]:

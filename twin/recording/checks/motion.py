@@ -96,7 +96,10 @@ def nearly_straight(legs: Legs) -> Check | None:
     """
     swing = np.exp(1j * legs.view.psi)
     summed, arm = legs.summed(AS_THEY_ARE.flow(legs.view)), swing[legs.last] - swing[legs.first]
-    best = float(np.sqrt(fit([summed, 1j * summed, arm, 1j * arm], legs.moved)[2]))
+    x, _, left_over = fit([summed, 1j * summed, arm, 1j * arm], legs.moved)
+    if not np.isfinite(x).all():  # too few windows
+        return None
+    best = float(np.sqrt(left_over))
     saw = (
         f"position and velocities differ by {100 * best:.1f} % of the distance whatever the heading's offset"
     )

@@ -89,6 +89,19 @@ class VoyageView:
         return self.si("heading_true_north_deg")
 
     @cached_property
+    def turned_between(self) -> float:
+        """By how much the ship turns from one sample to the next [rad], by its heading and by another
+        instrument alike (its rate of turn, or its course as positions have it): a tenth of the steps turn
+        more. 0 where there is no other."""
+        if not self.derived("yaw_rate_degps"):
+            other = self.si("yaw_rate_degps") * self.step_s
+        elif not self.derived("north_m"):
+            other = np.diff(np.angle(np.diff(self.place)))
+        else:
+            return 0.0
+        return min(map(_usual_turn, (np.diff(self.psi), other)))
+
+    @cached_property
     def speed(self) -> float:
         """Usual speed [m/s]: the 75 % quantile, so that a voyage that starts at rest still has one."""
         speed = np.abs(self.velocity)
@@ -120,6 +133,12 @@ class VoyageView:
         """(W,) integral of a rate over each window (trapezes); NaN where a sample is missing. `rate` (N,);
         `first`, `last` (W,); in the unit of the rate times s."""
         return RunningSum.of(rate, self.step_s).over(first, last)
+
+
+def _usual_turn(turns: np.ndarray) -> float:
+    """What a tenth of these turns (N,) [rad] is beyond [rad], the shorter way round."""
+    turns = turns[np.isfinite(turns)]
+    return float(np.quantile(np.abs(np.angle(np.exp(1j * turns))), 0.9)) if turns.size else 0.0
 
 
 def _usual_wait_s(v: Voyage, name: str) -> float:

@@ -53,8 +53,8 @@ SENSES: dict[str, Callable[[Problem, Theta, Rows | None], np.ndarray]] = {
 
 
 def blocks(p: Problem, theta: Theta, free: np.ndarray) -> list[Block]:
-    """All readings and priors about the states as they are, with their slopes by the numbers that are `free`
-    (P,)."""
+    """All readings and priors about the states as they are, with their slopes by the numbers of theta (P,),
+    each in its own unit, that are `free` (P,)."""
     out = []
     with remembering(p):
         for name, sense in SENSES.items():
