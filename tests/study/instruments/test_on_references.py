@@ -90,6 +90,7 @@ def test_a_healthy_receiver_gives_the_ship_no_effect(days):
     assert "smoothing" not in found.record.faults and len(found.record.numbers["smoothing"].voyages) == 3
 
 
+@thorough
 def test_what_the_references_show_no_more_of_than_sound_instruments_from_day_to_day_is_not_the_ships(days):
     """Test: on each reference a compass late by less than sound compasses seem to be on a voyage. Expected: its
     age is kept, far clear of none by its scatter between these voyages alone; no effect of the ship's, and
