@@ -33,6 +33,7 @@ def monday(tmp_path_factory):
 def test_the_hidden_effect_of_the_bundled_voyage_is_named(monday):
     assert monday["verdict"] == "missing"
     assert monday["missing"] == ["HullFouling"]
+    assert monday["learned_since"] == [], "python -m bench.bundled"
 
 
 def test_the_answer_has_the_keys_of_the_contract(monday):

@@ -154,7 +154,7 @@ def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
     """What could not be judged or seen, the water and wind of these voyages, and the noise they were judged
     under. `listed`: what the answer gives the numbers of."""
     case, noise_model = told.case, told.case.noise_model
-    as_before = told.considered.facts.as_before
+    as_before = [n for n in told.considered.facts.as_before if told.seen.get(n, True) or n in listed]
     told_already = [*told.decision.missing, *listed, *as_before, *case.present]
     return {
         "not_judged": _not_possible(case),
@@ -163,7 +163,7 @@ def _circumstances(told: SearchAnswer, listed: Sequence[str]) -> dict[str, Any]:
             for name, share in told.weights.weather.items()
             if share >= SOME or (told.causes and name in told.shown)
         ],
-        "as_on_references": list(as_before),
+        "as_on_references": as_before,
         "not_visible": too_small(told.seen, told_already),
         "floor": {
             "share_surge_sway_yaw": noise_model.share,
