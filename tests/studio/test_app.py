@@ -88,7 +88,8 @@ def test_a_ship_has_the_effects_of_its_own_actuators(folder):
 
 def test_what_a_person_noted_stays_in_the_ship_file_without_an_effect(folder):
     ship = folder / "tanker.toml"
-    ship.write_text("# dry dock in May\n" + ship.read_text())
+    late = '[effects.SensorDelay]\ndelay = { value = 0.1, unit = "s" }\n\n[sources]\n'
+    ship.write_text("# dry dock in May\n" + ship.read_text().replace("[sources]\n", late))
     body = {"ship": "tanker.toml", "effects": ["SensorDelay"], "output": "without.toml"}
     assert asked(folder, "/api/remove", body) == (200, {"output": "without.toml"})
     written = (folder / "without.toml").read_text()
