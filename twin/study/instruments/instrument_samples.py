@@ -125,9 +125,9 @@ def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool |
         by = _while_read(by["heading"], by)
     if "heading" not in by or ("place" not in by and "velocity" not in by):
         raise DataError(
-            f"{name}: no heading, or neither position nor velocity over ground, with "
-            f"{LEAST_INSTRUMENT_SAMPLES} samples: nothing can be compared. "
-            "Record them, or say in a map which columns they are."
+            f"{name}: nothing can be compared without {LEAST_INSTRUMENT_SAMPLES} samples of the heading "
+            "and as many, while it was read, of the position or of the velocity over ground. Record them "
+            "(longer, or more often), or say in a map which columns they are."
         )
     time = _time(by["heading"])
     body = by.pop("body", None)
