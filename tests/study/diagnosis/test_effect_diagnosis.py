@@ -14,6 +14,7 @@ from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
+from twin.physics.ship import load
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis import effect_diagnosis
@@ -34,6 +35,22 @@ def test_the_hidden_effect_of_the_bundled_voyage_is_named(monday):
     assert monday["verdict"] == "missing"
     assert monday["missing"] == ["HullFouling"]
     assert monday["learned_since"] == [], "python -m bench.bundled"
+
+
+@thorough
+@pytest.mark.parametrize("wait_s", [10.0, 30.0])
+def test_a_log_of_two_to_six_rows_a_minute_names_the_same(monday, wait_s):
+    """Test: Monday with a row every 10 s and every 30 s, a quarter and three quarters of the ship's time.
+    Expected: the same name, and a size within the two intervals."""
+    voyage = read_voyage(MONDAY)
+    rows = np.unique(np.searchsorted(voyage.time_s, np.arange(voyage.time_s[0], voyage.time_s[-1], wait_s)))
+    seldom = voyage.with_rows(voyage.time_s[rows], {n: x[rows] for n, x in voyage.columns.items()})
+    told = diagnose([seldom], load(SHIP)).result
+    assert told["missing"] == ["HullFouling"]
+    often, size = (d["candidates"][0]["parameters"][0] for d in (monday, told))
+    assert (
+        size["low95"] < often["value"] < size["high95"] and often["low95"] < size["value"] < often["high95"]
+    )
 
 
 def test_the_answer_has_the_keys_of_the_contract(monday):
