@@ -102,6 +102,7 @@ def test_the_last_rule_always_holds_and_each_reason_has_one_sentence():
             "undecided",
             "as_near_as_usual",
         ),  # restless, but led where it went
+        ({"likeliest": ("RudderWear",), "nothing": 0.3, "error_nothing": 2.0}, "undecided", "still_astray"),
         ({"unknown": 0.6, "nothing": 0.3, "resembles": ("RudderPlay",)}, "unknown", "resembles"),
         ({"unknown": 0.6, "nothing": 0.3, "sea": True}, "undecided", "weather_may_mislead"),
         ({"transient": 40.0}, "unknown", "pushed"),
@@ -190,8 +191,8 @@ def test_why_an_effect_is_not_named(changes, reason):
     "changes, verdict, missing",
     [
         ({"belongs_to": "instrument"}, "missing", ("SpeedLogScale",)),
-        ({"belongs_to": "instrument", "significance": 2.0}, "unknown", ()),
-        ({"belongs_to": "ship"}, "unknown", ()),
+        ({"belongs_to": "instrument", "significance": 2.0}, "undecided", ()),
+        ({"belongs_to": "ship"}, "undecided", ()),
     ],
 )
 def test_an_instrument_that_disagrees_is_named_although_nothing_explains_where_the_ship_went(
@@ -222,10 +223,10 @@ def test_lasting_causes_stand_before_the_weather_that_the_model_lacks():
     [
         (LEFT, "missing", False),
         (replace(LEFT, error=1.4, share=0.9), "missing", False),
-        (replace(LEFT, error=2.5, share=0.9), "unknown", False),  # leads the ship elsewhere
+        (replace(LEFT, error=2.5, share=0.9), "undecided", False),  # leads the ship elsewhere
         # takes away most of the error, and something more is missing
         (replace(LEFT, error=2.5, share=0.3), "missing", True),
-        (replace(LEFT, error=None, share=None), "unknown", False),  # nobody asked where it leads
+        (replace(LEFT, error=None, share=None), "undecided", False),  # nobody asked where it leads
     ],
 )
 def test_what_an_explanation_may_leave_over(left, verdict, more):

@@ -57,7 +57,12 @@ def is_explained(f: Facts) -> bool:
 def nameless(f: Facts) -> bool:
     """Whether something is at work that has no name, or that the best explanation leaves over; beside an
     instrument that is named it is said to be missing, too (`Decision.more`)."""
-    return f.unknown >= criteria.LOST or not (is_explained(f) or instrument_alone(f))
+    return likely_without_name(f) or not (is_explained(f) or instrument_alone(f))
+
+
+def likely_without_name(f: Facts) -> bool:
+    """Whether it is likelier than not that something without a name acts."""
+    return f.unknown >= criteria.LOST
 
 
 def instrument_alone(f: Facts) -> bool:
@@ -135,7 +140,20 @@ RULES: tuple[Rule, ...] = (
         say.pushed,
         f"{UNEXPLAINED}, and {PUSH}",
     ),
-    Rule("unexplained", nameless, "unknown", say.unexplained, UNEXPLAINED),
+    Rule(
+        "unexplained",
+        lambda f: nameless(f) and likely_without_name(f),
+        "unknown",
+        say.unexplained,
+        f"{UNEXPLAINED}, and something without a name is likelier than not",
+    ),
+    Rule(
+        "still_astray",
+        nameless,
+        "undecided",
+        say.still_astray,
+        f"{UNEXPLAINED}, and nothing says that it has no name",
+    ),
     Rule(
         "pushed_in_weather",
         lambda f: pushed(f) and not named(f) and f.sea,

@@ -120,9 +120,18 @@ def comes_and_goes(result: Result) -> str:
 
 def unexplained(result: Result) -> str:
     """Something is missing that no effect explains."""
+    return f"Something is missing, but none of the known effects explains it.{_nearest(result)}"
+
+
+def still_astray(result: Result) -> str:
+    """The open-loop error is there, what is likely does not lead nearer, and nothing says that it has no
+    name."""
+    return f"Undecided: {_error(result)}, and no effect that is likely explains it.{_nearest(result)}"
+
+
+def _nearest(result: Result) -> str:
     near = _near(result)
-    nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
-    return f"Something is missing, but none of the known effects explains it.{nearest}"
+    return f" Nearest, but not enough: {' with '.join(near)}." if near else ""
 
 
 def one_of(result: Result) -> str:
