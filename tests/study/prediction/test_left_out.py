@@ -6,6 +6,8 @@ import numpy as np
 
 from tests.study.track.test_holes import with_hole
 from twin.physics.model import Model
+from twin.study.estimation.columns import core_unknowns, with_values
+from twin.study.estimation.dissipation import DIRECTIONS, power
 from twin.study.estimation.normal import Normal
 from twin.study.prediction import left_out
 from twin.study.prediction.left_out import halved_at
@@ -48,3 +50,19 @@ def test_a_voyage_of_which_nothing_can_be_predicted_changes_nothing_of_what_the_
         for tracks in (told, [*told, blind])
     )
     assert of_three.tail == of_two.tail > 2.0
+
+
+def test_a_ship_without_one_of_its_voyages_takes_energy_out_of_its_motion_all_the_same(kvlcc2, monkeypatch):
+    """Test: the others alone would have a cross-flow drag that pushes, ten prior widths off. Expected: the most
+    probable numbers with which the hull is damped whichever way it moves, and the other step as it is."""
+    model = Model.of(kvlcc2)
+    unknowns = core_unknowns(model)
+    away, near = np.zeros((2, len(unknowns)))
+    away[[u.name for u in unknowns].index("Y_vv")], near[0] = 10.0, 0.01
+    of_others = iter((np.zeros(len(unknowns)), away, near))
+    monkeypatch.setattr(left_out, "voyages", lambda *_: ["one", "another"])
+    monkeypatch.setattr(left_out, "ship_of", lambda *_: (next(of_others), np.eye(len(unknowns))))
+    first, second = left_out.models_without(model, unknowns, None, away, away, 1.0, {})
+    u, v, r = (DIRECTIONS * 1.5 * float(kvlcc2.U_0)).T
+    assert power(first.ship, u, v, r / float(kvlcc2.L_pp)).min() > 0.0
+    assert second == with_values(model, unknowns[:1], [unknowns[0].centre + 0.01 * unknowns[0].sd], {})

@@ -10,7 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.physics.model import Model
+from twin.study.estimation.box import within
 from twin.study.estimation.columns import NO_MODEL, Unknown, with_values
+from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Catalogue
 from twin.study.estimation.innovations import Normal
 from twin.study.prediction.envelope import sailed
@@ -48,21 +50,21 @@ def models_without(
     temper: float,
     known: Catalogue,
 ) -> list[Model]:
-    """The ship as each voyage's others alone would have it. `normal`: equations of all voyages in these
-    unknowns; `scatter`, `pull` (P,): as between.py takes them. They are in prior widths."""
+    """The ship as each voyage's others alone would have it: the most probable one whose hull dissipates.
+    `normal`: equations of all voyages in these unknowns; `scatter`, `pull` (P,): as between.py takes them.
+    They are in prior widths."""
     sd = np.array([u.sd for u in unknowns])
     told = voyages(normal, sd, temper)
     whole = ship_of(told, scatter, pull)[0]
     present = {"core", *(type(e).__name__ for e in model.effects)}
     own = [i for i, u in enumerate(unknowns) if u.owner in present and u.owner not in NO_MODEL]
+    mine, centre = [unknowns[i] for i in own], np.array([unknowns[i].centre for i in own])
+    held, anywhere = half_spaces(model.ship, mine), np.outer([-np.inf, np.inf], np.ones(len(own)))
     out = []
     for i in range(len(told)):
-        moved = sd * (ship_of([t for j, t in enumerate(told) if j != i], scatter, pull)[0] - whole)
-        out.append(
-            with_values(
-                model, [unknowns[j] for j in own], [unknowns[j].centre + moved[j] for j in own], known
-            )
-        )
+        there, covariance = ship_of([t for j, t in enumerate(told) if j != i], scatter, pull)
+        step = within((there - whole)[own], covariance[np.ix_(own, own)], anywhere, held)
+        out.append(with_values(model, mine, (centre + sd[own] * step).tolist(), known))
     return out
 
 
