@@ -18,14 +18,19 @@ FIT = RESULTS / "fleet_fit.json"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, nargs="+", help="folders with rows.jsonl")
     parser.add_argument(
-        "--new", action="store_true", help="of ships that no fit had seen when they were asked"
+        "--new",
+        nargs="?",
+        const=NEW_SHIPS[0].stem,
+        metavar="NAME",
+        help="of ships that no fit had seen when they were asked: into docs/results/NAME.csv (new-ships)",
     )
 
 
 def run(args: argparse.Namespace) -> int:
     """The rows put down, and what the forms of hulls ask of the decision for the one that is left out.
     (Minutes.)"""
-    kept_rows.write(rows_of(args.folder), *(NEW_SHIPS if args.new else FLEET))
+    new = RESULTS / f"{args.new}.csv", RESULTS / f"{args.new}_facts.jsonl"
+    kept_rows.write(rows_of(args.folder), *(new if args.new else FLEET))
     if not args.new:
         fit = decision_fit.chosen(decision_fit.of_one_search(decision_fit.with_facts(kept_rows.read(*FLEET))))
         FIT.write_text(json.dumps(fit, indent=1) + "\n")
