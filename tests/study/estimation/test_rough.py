@@ -70,7 +70,7 @@ def test_a_steady_pull_that_a_known_wind_may_have_missed_tells_little(windy):
     with_doubt, without = (case.reduced(case.lines, case.scenarios(["usual"]))[0] for case in (windy, sure))
     pull, compass = (with_doubt.rows((name,)) for name in ("ExternalForce", "HeadingBias"))
     tells = lambda reduced, rows: float(np.trace(reduced.A[np.ix_(rows, rows)]))
-    assert tells(with_doubt, pull) < 0.9 * tells(without, pull)
+    assert tells(with_doubt, pull) < 0.92 * tells(without, pull)
     assert tells(with_doubt, compass) > 0.95 * tells(without, compass)
 
 

@@ -38,7 +38,7 @@ FACTS: dict[str, Callable[[Facts, Cause, Decision], float]] = {  # each makes a 
 OF_CAUSE = {"constant": -3.19, "log_odds": 1.31, "clearness": 0.83, "named": 1.11}  # of the explanation
 OF_CAUSE_BESIDE = {"constant": -1.09, "log_odds": 0.93}  # the explanation does without it
 OF_NOTHING = {"constant": -0.98, "log_odds": 1.21, "unnamed": 1.44}  # no cause of ship and instruments
-OF_UNKNOWN = {"constant": -0.8, "log_odds": 1.24, "verdict": 0.36}  # what is there has no name
+OF_UNKNOWN = {"constant": -0.89, "log_odds": 1.18, "verdict": 0.71}  # what is there has no name
 
 
 def of_cause(f: Facts, d: Decision, effect: str, posterior: float) -> float:
