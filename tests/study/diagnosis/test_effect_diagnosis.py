@@ -149,8 +149,7 @@ def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
     result = diagnose([voyages["Sloshing"]], tanker).result
     assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(terminal_lines(result))
     like, *_ = result["resembles"]
-    share, *_ = like["parameters"]
-    assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
+    assert "SwayingMass" in (like["effect"], *like["together_with"])
 
 
 @thorough
